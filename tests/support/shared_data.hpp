@@ -1,0 +1,47 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace planum::testing {
+
+/// ../shared/datasets/NAME beside the project, if it is there.
+inline std::optional<std::filesystem::path> shared_dataset(const std::string& name) {
+  const auto path =
+      std::filesystem::path(PLANUM_SOURCE_DIR).parent_path() / "shared" / "datasets" / name;
+  if (std::filesystem::exists(path)) return path;
+  return std::nullopt;
+}
+
+/// A fresh directory for one test, removed at the end.
+class TemporaryDirectory {
+ public:
+  TemporaryDirectory() {
+    std::string pattern =
+        (std::filesystem::temp_directory_path() / "planum-test-XXXXXX").string();
+    if (!mkdtemp(pattern.data())) throw std::runtime_error("cannot make " + pattern);
+    path_ = pattern;
+  }
+  ~TemporaryDirectory() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryDirectory(const TemporaryDirectory&) = delete;
+  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace planum::testing
+
+/// Skips the test where the shared data set is absent; otherwise `path` names its directory.
+#define PLANUM_SHARED_DATASET(path, name)                                   \
+  const auto path##_if_there = ::planum::testing::shared_dataset(name);     \
+  if (!path##_if_there) GTEST_SKIP() << "../shared/datasets/" name " is absent"; \
+  const std::filesystem::path path = *path##_if_there

@@ -1,0 +1,36 @@
+# Flags and rules that every target of the project shares.
+add_library(planum_flags INTERFACE)
+target_compile_features(planum_flags INTERFACE cxx_std_20)
+target_compile_options(planum_flags INTERFACE
+  $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
+  $<$<BOOL:${PLANUM_WARNINGS_AS_ERRORS}>:-Werror>
+  $<$<BOOL:${PLANUM_NATIVE}>:-march=native>
+  # The same sum in the same order everywhere: no contraction that depends on inlining.
+  -ffp-contract=off>)
+# Fixed alignment: an installed library built with -march=native and a user built without agree.
+target_compile_definitions(planum_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
+if(PLANUM_SANITIZE)
+  target_compile_options(planum_flags INTERFACE
+    $<BUILD_INTERFACE:-fsanitize=${PLANUM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all>)
+  target_link_options(planum_flags INTERFACE $<BUILD_INTERFACE:-fsanitize=${PLANUM_SANITIZE}>)
+endif()
+install(TARGETS planum_flags EXPORT planum_targets)
+
+# planum_library(NAME [PUBLIC dep...] [PRIVATE dep...]): one library per folder, every .cpp in it.
+function(planum_library name)
+  cmake_parse_arguments(arg "" "" "PUBLIC;PRIVATE" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.hpp)
+  add_library(planum_${name} STATIC ${sources})
+  add_library(planum::${name} ALIAS planum_${name})
+  set_target_properties(planum_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(planum_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/planum>)
+  target_link_libraries(planum_${name} PUBLIC planum_flags ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  install(TARGETS planum_${name} EXPORT planum_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/planum/${folder})
+  set_property(GLOBAL APPEND PROPERTY PLANUM_HEADERS ${headers})
+  set_property(GLOBAL APPEND PROPERTY PLANUM_LIBRARIES planum_${name})
+endfunction()
