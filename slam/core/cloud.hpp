@@ -1,9 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "slam/core/pose.hpp"
 
@@ -14,7 +15,8 @@ struct Cloud {
   std::vector<Eigen::Vector3f> points;   ///< m
   std::vector<Eigen::Vector3f> normals;  ///< unit, towards the scanner; zero where unknown
   std::vector<float> intensity;          ///< as the sensor gives it
-  std::vector<std::uint32_t> scan;       ///< which scan a merged point came from (its position in the list of scans)
+  std::vector<std::uint32_t>
+      scan;  ///< which scan a merged point came from (its position in the list of scans)
 };
 
 /// One 3D scan and where it was taken.
@@ -22,7 +24,7 @@ struct Scan {
   std::string id;  ///< as in the file name, e.g. "scan007"
   int number = 0;  ///< e.g. 7; the first column of trajectory files
   Pose world_from_scan = Pose::Identity();
-  Cloud cloud;     ///< in the scanner's frame
+  Cloud cloud;  ///< in the scanner's frame
 };
 
 /// The points and normals of a cloud in another frame.

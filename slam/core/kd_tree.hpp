@@ -1,11 +1,13 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace planum {
 
@@ -21,12 +23,11 @@ struct Neighbour {
   }
 };
 
-/// An exact nearest-neighbour search tree over 3D points (float). Immutable after construction, so
-/// that any number of threads may search it. Points are copied, sorted by leaf.
+/// An exact nearest-neighbour search tree over 3D points (float): a complete binary tree in heap
+/// order (children of node i: 2i and 2i+1, side by side in memory) over buckets of up to 16 points,
+/// with tight boxes. Immutable after construction, so that any number of threads may search it.
 class KdTree {
  public:
-  struct Node;
-
   /// Throws Error if a point is not finite.
   explicit KdTree(std::span<const Eigen::Vector3f> points);
 
@@ -49,9 +50,17 @@ class KdTree {
   void within(const Eigen::Vector3f& query, float radius, std::vector<Neighbour>& result) const;
 
  private:
-  std::vector<Node> nodes_;             ///< depth first: the left child follows its parent
-  std::vector<float> x_, y_, z_;        ///< points sorted by leaf, one array a coordinate
-  std::vector<std::uint32_t> indices_;  ///< where a sorted point was in the input
+  struct Box {
+    Eigen::Array3f low, high;
+  };
+  friend class KdSearch;
+
+  std::uint32_t first_leaf_ = 1;           ///< leaves are the nodes [first_leaf_, 2 first_leaf_)
+  std::vector<Box> boxes_;                 ///< tight boxes of the nodes, from 1
+  std::vector<Box> cells_;                 ///< the parts of space the nodes answer for
+  std::vector<std::uint32_t> leaf_begin_;  ///< first point of each leaf, and the end of the last
+  std::vector<float> x_, y_, z_;           ///< points sorted by leaf, one array a coordinate
+  std::vector<std::uint32_t> indices_;     ///< where a sorted point was in the input
 };
 
 }  // namespace planum

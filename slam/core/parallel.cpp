@@ -1,12 +1,11 @@
 #include "slam/core/parallel.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <atomic>
 #include <exception>
 #include <limits>
 #include <mutex>
+#include <omp.h>
 
 namespace planum {
 

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <span>
+
+#include <Eigen/Core>
 
 namespace planum {
 
@@ -34,8 +35,9 @@ struct PointMoments {
 struct PlaneFit {
   Plane plane;
   Eigen::Vector3d centroid;
-  Eigen::Vector3d variances;  ///< m^2 along the principal axes, ascending: [0] is the squared rms distance
-  Eigen::Matrix3d axes;       ///< columns: the principal axes, in the same order
+  Eigen::Vector3d
+      variances;  ///< m^2 along the principal axes, ascending: [0] is the squared rms distance
+  Eigen::Matrix3d axes;  ///< columns: the principal axes, in the same order
 };
 
 /// Empty if fewer than three points, or if they are collinear.

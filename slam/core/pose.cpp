@@ -5,15 +5,15 @@
 namespace planum {
 namespace {
 
-/// Coefficients of the series around 0 and their closed forms: sin(a)/a, (1-cos a)/a^2, (a-sin a)/a^3.
+/// Coefficients of the series around 0 and their closed forms: sin(a)/a, (1-cos a)/a^2, (a-sin
+/// a)/a^3.
 struct RotationCoefficients {
   double sine, versine, cubic;
 };
 
 RotationCoefficients rotation_coefficients(double angle) {
   const double squared = angle * angle;
-  if (angle < 1e-4)
-    return {1 - squared / 6, 0.5 - squared / 24, 1.0 / 6 - squared / 120};
+  if (angle < 1e-4) return {1 - squared / 6, 0.5 - squared / 24, 1.0 / 6 - squared / 120};
   return {std::sin(angle) / angle, (1 - std::cos(angle)) / squared,
           (angle - std::sin(angle)) / (squared * angle)};
 }
@@ -30,8 +30,7 @@ Pose exp_se3(const Vector6d& twist) {
   const Eigen::Vector3d omega = twist.tail<3>();
   const auto [sine, versine, cubic] = rotation_coefficients(omega.norm());
   const Eigen::Matrix3d w = skew(omega);
-  const Eigen::Matrix3d left_jacobian =
-      Eigen::Matrix3d::Identity() + versine * w + cubic * w * w;
+  const Eigen::Matrix3d left_jacobian = Eigen::Matrix3d::Identity() + versine * w + cubic * w * w;
   Pose pose = Pose::Identity();
   pose.linear() = Eigen::Matrix3d::Identity() + sine * w + versine * w * w;
   pose.translation() = left_jacobian * twist.head<3>();
@@ -52,8 +51,7 @@ Vector6d log_se3(const Pose& pose) {
                        ? 1.0 / 12 + squared / 720
                        : 1 / squared - (1 + std::cos(angle)) / (2 * angle * std::sin(angle));
   Vector6d twist;
-  twist.head<3>() =
-      (Eigen::Matrix3d::Identity() - 0.5 * w + c * w * w) * pose.translation();
+  twist.head<3>() = (Eigen::Matrix3d::Identity() - 0.5 * w + c * w * w) * pose.translation();
   twist.tail<3>() = omega;
   return twist;
 }

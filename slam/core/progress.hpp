@@ -6,7 +6,8 @@
 namespace planum {
 
 /// Where a long computation says how far it is. A default-constructed one is silent. Copies share
-/// the sink; `report` may be called from any thread if the sink allows it (those of the program do).
+/// the sink; `report` may be called from any thread if the sink allows it (those of the program
+/// do).
 class Progress {
  public:
   using Sink = std::function<void(std::size_t done, std::size_t total)>;

@@ -7,7 +7,8 @@ namespace planum {
 
 /// How a tilting 2D laser measures; the meaning of the header keys of a `.slices` file.
 struct TiltedLaser {
-  double first_beam = -1.5707963267948966;  ///< rad, azimuth of beam 0, counter-clockwise seen from above
+  double first_beam =
+      -1.5707963267948966;   ///< rad, azimuth of beam 0, counter-clockwise seen from above
   double beam_step = 0;      ///< rad between beams; 0: half a turn over all beams, pi / (beams - 1)
   double min_range = 0;      ///< m, shorter ranges are no returns
   double max_range = 0;      ///< m, longer ranges are no returns; 0: no limit

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <optional>
 #include <string>
+
+#include <gtest/gtest.h>
 
 namespace planum::testing {
 
@@ -20,8 +20,7 @@ inline std::optional<std::filesystem::path> shared_dataset(const std::string& na
 class TemporaryDirectory {
  public:
   TemporaryDirectory() {
-    std::string pattern =
-        (std::filesystem::temp_directory_path() / "planum-test-XXXXXX").string();
+    std::string pattern = (std::filesystem::temp_directory_path() / "planum-test-XXXXXX").string();
     if (!mkdtemp(pattern.data())) throw std::runtime_error("cannot make " + pattern);
     path_ = pattern;
   }
@@ -41,7 +40,7 @@ class TemporaryDirectory {
 }  // namespace planum::testing
 
 /// Skips the test where the shared data set is absent; otherwise `path` names its directory.
-#define PLANUM_SHARED_DATASET(path, name)                                   \
-  const auto path##_if_there = ::planum::testing::shared_dataset(name);     \
+#define PLANUM_SHARED_DATASET(path, name)                                        \
+  const auto path##_if_there = ::planum::testing::shared_dataset(name);          \
   if (!path##_if_there) GTEST_SKIP() << "../shared/datasets/" name " is absent"; \
   const std::filesystem::path path = *path##_if_there
