@@ -1,0 +1,163 @@
+// The search tree beside FLANN and nanoflann on the same points and queries: scan 0 of
+// kurt3d_corridor, queried by the points of scan 1 as their pose files place them.
+#include <benchmark/benchmark.h>
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wold-style-cast"
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wpedantic"
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#include <nanoflann.hpp>
+
+#include <flann/flann.hpp>
+#pragma GCC diagnostic pop
+
+#include <filesystem>
+
+#include "slam/core/cloud.hpp"
+#include "slam/core/kd_tree.hpp"
+#include "slam/io/uos.hpp"
+
+namespace {
+
+using namespace planum;
+
+constexpr float radius = 1.0f;
+
+struct Data {
+  std::vector<Eigen::Vector3f> target, queries;
+};
+
+const Data& data() {
+  static const Data loaded = [] {
+    const auto folder =
+        std::filesystem::path(PLANUM_SOURCE_DIR).parent_path() / "shared/datasets/kurt3d_corridor";
+    const Pose target_from_source =
+        read_uos_pose(folder / "scan000.pose").inverse() * read_uos_pose(folder / "scan001.pose");
+    const auto near = [](const Cloud& cloud) {
+      std::vector<Eigen::Vector3f> kept;
+      for (const auto& p : cloud.points)
+        if (p.norm() > 0.5f && p.norm() < 30) kept.push_back(p);
+      return kept;
+    };
+    Cloud source;
+    source.points = near(read_uos_scan(folder / "scan001.3d"));
+    return Data{near(read_uos_scan(folder / "scan000.3d")),
+                transformed(source, target_from_source).points};
+  }();
+  return loaded;
+}
+
+/// nanoflann's view of a list of points.
+struct Adaptor {
+  const std::vector<Eigen::Vector3f>& points;
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return points[i][static_cast<Eigen::Index>(axis)];
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+using Nanoflann = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Adaptor>,
+                                                      Adaptor, 3, std::uint32_t>;
+
+/// A small motion, as between two iterations of ICP: 2 cm and 0.2 deg.
+std::vector<Eigen::Vector3f> moved_a_little(const std::vector<Eigen::Vector3f>& points) {
+  Cloud cloud;
+  cloud.points = points;
+  return transformed(cloud, pose_from_xyz_ypr({0.02, 0.005, 0.002}, radians(0.2), 0, 0)).points;
+}
+
+void BM_Build(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(KdTree(data().target));
+}
+void BM_BuildNanoflann(benchmark::State& state) {
+  const Adaptor adaptor{data().target};
+  for (auto _ : state) {
+    Nanoflann tree(3, adaptor, {16});
+    tree.buildIndex();
+    benchmark::DoNotOptimize(tree);
+  }
+}
+
+void BM_Nearest(benchmark::State& state) {
+  const KdTree tree(data().target);
+  for (auto _ : state)
+    for (const auto& query : data().queries) benchmark::DoNotOptimize(tree.nearest(query, radius));
+}
+
+void BM_NearestCached(benchmark::State& state) {
+  const KdTree tree(data().target);
+  std::vector<std::uint32_t> hints(data().queries.size(), 0);
+  for (std::size_t i = 0; i < hints.size(); ++i) tree.nearest(data().queries[i], radius, hints[i]);
+  const auto queries = moved_a_little(data().queries);
+  for (auto _ : state) {
+    auto h = hints;
+    for (std::size_t i = 0; i < queries.size(); ++i)
+      benchmark::DoNotOptimize(tree.nearest(queries[i], radius, h[i]));
+  }
+}
+
+void BM_NearestNanoflann(benchmark::State& state) {
+  const Adaptor adaptor{data().target};
+  Nanoflann tree(3, adaptor, {16});
+  tree.buildIndex();
+  for (auto _ : state)
+    for (const auto& query : data().queries) {
+      std::uint32_t index = 0;
+      float squared = radius * radius;
+      nanoflann::KNNResultSet<float, std::uint32_t> result(1);
+      result.init(&index, &squared);
+      squared = radius * radius;
+      tree.findNeighbors(result, query.data(), {});
+      benchmark::DoNotOptimize(index);
+    }
+}
+
+void BM_NearestFlann(benchmark::State& state) {
+  auto target = data().target;
+  const flann::Matrix<float> points(target.front().data(), target.size(), 3);
+  flann::KDTreeSingleIndex<flann::L2_3D<float>> tree(points, flann::KDTreeSingleIndexParams(16));
+  tree.buildIndex();
+  const flann::SearchParams exact(flann::FLANN_CHECKS_UNLIMITED);
+  for (auto _ : state)
+    for (auto query : data().queries) {
+      int index = 0;
+      float squared = 0;
+      flann::Matrix<int> indices(&index, 1, 1);
+      flann::Matrix<float> distances(&squared, 1, 1);
+      tree.knnSearch(flann::Matrix<float>(query.data(), 1, 3), indices, distances, 1, exact);
+      benchmark::DoNotOptimize(index);
+    }
+}
+
+void BM_TwentyNearest(benchmark::State& state) {
+  const KdTree tree(data().target);
+  std::vector<Neighbour> found;
+  for (auto _ : state)
+    for (const auto& query : data().target) tree.k_nearest(query, 20, found);
+}
+void BM_TwentyNearestNanoflann(benchmark::State& state) {
+  const Adaptor adaptor{data().target};
+  Nanoflann tree(3, adaptor, {16});
+  tree.buildIndex();
+  std::vector<std::uint32_t> indices(20);
+  std::vector<float> squared(20);
+  for (auto _ : state)
+    for (const auto& query : data().target)
+      tree.knnSearch(query.data(), 20, indices.data(), squared.data());
+}
+
+BENCHMARK(BM_Build)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_BuildNanoflann)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_Nearest)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_NearestCached)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_NearestNanoflann)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_NearestFlann)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_TwentyNearest)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_TwentyNearestNanoflann)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();
