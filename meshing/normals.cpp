@@ -1,0 +1,133 @@
+#include "meshing/normals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "meshing/view_patches.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/parallel.hpp"
+
+namespace planum {
+namespace {
+
+constexpr std::size_t blocks_per_task = 16;
+
+void check(const Cloud& cloud, std::span<const Eigen::Vector3d> scan_origins,
+           const NormalParams& params) {
+  if (!(params.cell > 0))
+    throw Error("normals: cell must be above 0, is " + std::to_string(params.cell));
+  if (params.levels < 1 || params.levels > 10)
+    throw Error("normals: levels must be 1 to 10, is " + std::to_string(params.levels));
+  if (scan_origins.empty())
+    throw Error("normals: no scan origins: which side of a surface is free cannot be told");
+  if (cloud.scan.empty()) {
+    if (scan_origins.size() > 1)
+      throw Error("normals: " + std::to_string(scan_origins.size()) +
+                  " scan origins, but the points do not say which scan they are from");
+    return;
+  }
+  if (cloud.scan.size() != cloud.points.size())
+    throw Error("normals: " + std::to_string(cloud.points.size()) + " points, but " +
+                std::to_string(cloud.scan.size()) + " scan indices");
+  const auto highest = std::max_element(cloud.scan.begin(), cloud.scan.end());
+  if (highest != cloud.scan.end() && *highest >= scan_origins.size())
+    throw Error("normals: point " + std::to_string(highest - cloud.scan.begin()) +
+                " is from scan " + std::to_string(*highest) + ", but there are only " +
+                std::to_string(scan_origins.size()) + " scan origins");
+}
+
+/// The planes that points of one cell may belong to.
+using Candidates = std::vector<PatchPlane>;
+
+void planes_around(const PatchGrid& grid, const std::vector<PatchPlane>& planes,
+                   const std::vector<std::uint32_t>& first, const Eigen::Vector3i& at,
+                   Candidates& candidates) {
+  constexpr int width = block_width + 2;
+  candidates.clear();
+  for (int z = at.z(); z < at.z() + 3; ++z)
+    for (int y = at.y(); y < at.y() + 3; ++y)
+      for (int x = at.x(); x < at.x() + 3; ++x) {
+        std::uint32_t patch = first[std::size_t((z * width + y) * width + x)];
+        if (patch == no_thing) continue;
+        const CellKey cell = grid.cells[patch];
+        for (; patch < grid.cells.size() && grid.cells[patch] == cell; ++patch)
+          if (planes[patch].weight > 0) candidates.push_back(planes[patch]);
+      }
+}
+
+/// The average of the planes that explain the point; zero if none does.
+Eigen::Vector3f normal_of(const Eigen::Vector3f& point, const Eigen::Vector3f& view,
+                          const Candidates& candidates, std::vector<float>& weights) {
+  constexpr float grazing = -0.1f;     // how far a scanner may seem behind a plane
+  constexpr float same_plane = 0.87f;  // cosine, about 30 degrees
+  weights.assign(candidates.size(), 0.0f);
+  std::size_t best = 0;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const PatchPlane& plane = candidates[k];
+    const float distance = plane.normal.dot(point) - plane.offset;
+    const float ratio = distance * distance / plane.variance;
+    if (ratio > 9 || plane.normal.dot(view) < grazing) continue;
+    weights[k] = std::exp(-0.5f * ratio) * plane.weight / plane.variance;
+    if (weights[k] > weights[best]) best = k;
+  }
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (std::size_t k = 0; k < candidates.size(); ++k)
+    if (weights[k] > 0 && candidates[k].normal.dot(candidates[best].normal) > same_plane)
+      sum += weights[k] * candidates[k].normal;
+  const float length = sum.norm();
+  return length > 0 ? Eigen::Vector3f(sum / length) : Eigen::Vector3f::Zero();
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3f> estimate_normals(const Cloud& cloud,
+                                              std::span<const Eigen::Vector3d> scan_origins,
+                                              const NormalParams& params,
+                                              const Progress& progress) {
+  check(cloud, scan_origins, params);
+  std::vector<Eigen::Vector3f> normals(cloud.points.size(), Eigen::Vector3f::Zero());
+  Lattice lattice = lattice_around(cloud.points, params.cell);
+  std::vector<CellKey> cells = cell_keys(lattice, cloud.points);
+  CellSort sorted = sort_by_cell(cells);
+  PatchGrid grid = view_patches(lattice, sorted, cells, cloud, scan_origins);
+  for (int level = 0; level < params.levels; ++level) {
+    if (level > 0) grid = coarser(grid);
+    const std::vector<PatchPlane> planes = patch_planes(grid, params);
+    parallel_for(sorted.blocks.size(), blocks_per_task, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> first;
+      Candidates candidates;
+      std::vector<float> weights;
+      for (std::size_t b = begin; b < end; ++b) {
+        const CellKey block = sorted.blocks.key(b);
+        surrounding_cells(grid.blocks, grid.begin, grid.cells, block, 1, first);
+        CellKey cell = no_cell;
+        for (std::uint32_t k = sorted.begin[b]; k < sorted.begin[b + 1]; ++k) {
+          const std::uint32_t i = sorted.order[k];
+          if (cells[i] != cell) {
+            cell = cells[i];
+            planes_around(grid, planes, first, cell_of(cell) - cell_of(block), candidates);
+          }
+          const std::size_t scan = cloud.scan.empty() ? 0 : cloud.scan[i];
+          const Eigen::Vector3d point = cloud.points[i].cast<double>();
+          normals[i] = normal_of((point - lattice.origin).cast<float>(),
+                                 (scan_origins[scan] - point).cast<float>().normalized(),
+                                 candidates, weights);
+        }
+      }
+    });
+    progress.report(std::size_t(level + 1), std::size_t(params.levels));
+    if (level + 1 == params.levels) break;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (cells[i] == no_cell) continue;
+      const Eigen::Vector3i cell = cell_of(cells[i]);
+      cells[i] =
+          normals[i].isZero() ? cell_key(cell.x() >> 1, cell.y() >> 1, cell.z() >> 1) : no_cell;
+    }
+    sorted = sort_by_cell(cells);
+    if (sorted.order.empty()) break;
+  }
+  return normals;
+}
+
+}  // namespace planum
