@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "slam/core/triangle_mesh.hpp"
+
+namespace planum {
+
+/// Reads vertices and faces of a Wavefront .obj file; the group of a face is the name of the last
+/// `usemtl` line ("default" before the first). Faces of more than three corners are cut into
+/// triangles; indices may be negative (from the end) and carry `/texture/normal`, which is passed
+/// over like all other lines. Throws Error `path:line` for bad numbers and indices, and if there is
+/// no face.
+LabelledMesh read_obj(const std::filesystem::path& path);
+
+struct ObjParams {
+  std::string material_library;  ///< file name for a `mtllib` line; empty: no such line
+};
+
+/// Writes vertices, and triangles in their order with a `usemtl` line wherever the group changes.
+/// Vertices come back exactly. Throws Error if a name is not one line of text.
+void write_obj(const std::filesystem::path& path, const LabelledMesh& labelled,
+               const ObjParams& params = {});
+
+}  // namespace planum
