@@ -43,4 +43,4 @@ class TemporaryDirectory {
 #define PLANUM_SHARED_DATASET(path, name)                                        \
   const auto path##_if_there = ::planum::testing::shared_dataset(name);          \
   if (!path##_if_there) GTEST_SKIP() << "../shared/datasets/" name " is absent"; \
-  const std::filesystem::path path = *path##_if_there
+  const auto path = *path##_if_there
