@@ -1,0 +1,37 @@
+#include "tools/planum/simulated_scans.hpp"
+
+#include <fmt/format.h>
+
+#include "slam/io/slices.hpp"
+#include "slam/io/tum.hpp"
+
+namespace planum {
+namespace {
+
+/// Poses relative to the first one, stamped 0, 1, 2 ...
+Trajectory from_first(std::span<const Pose> poses) {
+  Trajectory trajectory;
+  for (const Pose& pose : poses) {
+    const auto stamp = static_cast<double>(trajectory.size());
+    trajectory.push_back({stamp, orthonormalized(poses.front().inverse() * pose)});
+  }
+  return trajectory;
+}
+
+}  // namespace
+
+void write_simulated_scans(const std::filesystem::path& directory, const TriangleMesh& model,
+                           std::span<const Pose> model_from_scan, const SimulatorParams& simulator,
+                           const DriftParams& drift, const Progress& progress) {
+  std::filesystem::create_directories(directory);
+  const RayCaster caster(model);
+  for (std::size_t i = 0; i < model_from_scan.size(); ++i) {
+    const auto scan = simulate_scan(caster, model_from_scan[i], i, simulator).scan;
+    write_slices(directory / fmt::format("scan{:03}.slices", i), scan);
+    progress.report(i + 1, model_from_scan.size());
+  }
+  write_tum(directory / "truth.tum", from_first(model_from_scan));
+  write_tum(directory / "odometry.tum", from_first(drifted(model_from_scan, drift)));
+}
+
+}  // namespace planum

@@ -1,0 +1,106 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "slam/core/error.hpp"
+#include "slam/registration/sequence.hpp"
+#include "tools/workflow/pair_matching.hpp"
+#include "tools/workflow/results.hpp"
+#include "tools/workflow/stages/stages.hpp"
+
+namespace planum {
+namespace {
+
+std::vector<Pose> given_poses(const Imported& imported) {
+  std::vector<Pose> poses;
+  for (const Scan& scan : imported.scans) poses.push_back(scan.world_from_scan);
+  return poses;
+}
+
+/// method = "none": what came with the scans is taken for measured.
+SequenceMatch trusted(const std::vector<Pose>& poses, const OdometryNoise& noise) {
+  SequenceMatch match{poses, {}};
+  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
+    SequenceStep step;
+    step.alignment.target_from_source = poses[i].inverse() * poses[i + 1];
+    step.alignment.information = odometry_information(step.alignment.target_from_source, noise);
+    step.alignment.converged = true;
+    step.matched = true;
+    match.steps.push_back(step);
+  }
+  return match;
+}
+
+SequenceMatch matched(const Imported& imported, StageContext& context) {
+  const Settings& settings = context.project.settings;
+  PairMatching matching(imported, settings, context.units);
+  return match_in_order(given_poses(imported), matching.matcher(), settings.sequence,
+                        context.progress);
+}
+
+/// Root mean square over all pairs of points of all matched steps, m.
+double rms(const SequenceMatch& match) {
+  double squares = 0, pairs = 0;
+  for (const SequenceStep& step : match.steps) {
+    if (!step.matched) continue;
+    const auto count = static_cast<double>(step.alignment.pairs);
+    squares += count * step.alignment.rms * step.alignment.rms;
+    pairs += count;
+  }
+  return pairs > 0 ? std::sqrt(squares / pairs) : 0;
+}
+
+void report(const SequenceMatch& match, const Imported& imported, Manifest& record) {
+  std::size_t good = 0;
+  for (std::size_t i = 0; i < match.steps.size(); ++i) {
+    const SequenceStep& step = match.steps[i];
+    if (step.matched) {
+      ++good;
+    } else {
+      record.warnings.push_back(fmt::format("{} could not be matched with {}: {}",
+                                            imported.scans[i + 1].id, imported.scans[i].id,
+                                            step.reason));
+    }
+  }
+  record.summary = fmt::format("{} of {} pairs matched, rms {:.1f} mm", good, match.steps.size(),
+                               1000 * rms(match));
+}
+
+void work(StageContext& context) {
+  const Imported& imported = context.results.imported.get();
+  const Settings& settings = context.project.settings;
+  const bool have_poses = imported.pose_source != "none";
+  SequenceMatch match;
+  if (settings.registration_method == "none") {
+    if (!have_poses) {
+      throw Error(
+          "method = \"none\" trusts the poses that came with the scans, but there are none");
+    }
+    match = trusted(given_poses(imported), settings.sequence.odometry);
+    context.record.summary = "the poses that came with the scans are trusted";
+  } else {
+    match = matched(imported, context);
+    report(match, imported, context.record);
+    if (!have_poses) {
+      context.record.warnings.insert(
+          context.record.warnings.begin(),
+          "the scans have no poses: each one is searched for where the one before was");
+    }
+  }
+  write_result(context.result, match);
+  context.results.registered.set(std::move(match));
+}
+
+}  // namespace
+
+Stage register_stage() {
+  return {.name = "register",
+          .version = 1,
+          .unit = "pairs",
+          .needs = {"import"},
+          .parameters = {"registration"},
+          .input_files = {},
+          .work = work};
+}
+
+}  // namespace planum
