@@ -21,7 +21,8 @@ constexpr double rim_radius = 0.7;
 
 void check_range(const char* option, double value, double low, double high) {
   if (!(value >= low && value <= high))
-    throw Error(fmt::format("{} is {}, must be between {} and {}", option, value, low, high));
+    throw Error(
+        fmt::format("{} is {:.6g}, must be between {:.6g} and {:.6g}", option, value, low, high));
 }
 
 void check(const SimulatorParams& params) {

@@ -21,13 +21,15 @@ class SurfaceBuilder {
   void add_triangle(const std::string& group, const std::array<Eigen::Vector3d, 3>& corners);
   void add_quad(const std::string& group, const std::array<Eigen::Vector3d, 4>& corners);
 
-  /// A closed box on the centre of its underside, turned about z (rad), seen from outside.
+  /// A closed box on the centre of its underside, turned about z (rad), seen from outside. It
+  /// shares no vertex with what it touches.
   void add_box(const std::string& group, const Eigen::Vector3d& base, const Eigen::Vector3d& size,
                double turn);
 
   const LabelledMesh& mesh() const { return mesh_; }
 
  private:
+  void add_indexed(const std::string& group, const std::array<std::uint32_t, 3>& triangle);
   std::uint32_t vertex(const Eigen::Vector3d& position);
 
   LabelledMesh mesh_;
