@@ -1,7 +1,6 @@
 #include "slam/core/kd_tree.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 
@@ -13,21 +12,24 @@
 namespace planum {
 namespace {
 
-constexpr std::uint32_t bucket_size = 16;
+constexpr std::size_t bucket_size = 16;
+using Four = float __attribute__((vector_size(16)));
 constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float largest = std::numeric_limits<float>::max();
 
 struct IndexedPoint {
-  Eigen::Vector3f point;
+  std::array<float, 3> point;
   std::uint32_t index;
 };
 
 std::vector<IndexedPoint> indexed(std::span<const Eigen::Vector3f> points) {
   std::vector<IndexedPoint> result(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!points[i].allFinite())
-      throw Error(fmt::format("search tree: point {} is not finite ({}, {}, {})", i, points[i].x(),
-                              points[i].y(), points[i].z()));
-    result[i] = {points[i], static_cast<std::uint32_t>(i)};
+    const Eigen::Vector3f& p = points[i];
+    if (!p.allFinite())
+      throw Error(
+          fmt::format("search tree: point {} is not finite ({}, {}, {})", i, p.x(), p.y(), p.z()));
+    result[i] = {{p.x(), p.y(), p.z()}, static_cast<std::uint32_t>(i)};
   }
   return result;
 }
@@ -38,104 +40,177 @@ std::uint32_t leaf_count(std::size_t points) {
   return static_cast<std::uint32_t>(std::bit_ceil(std::max<std::size_t>(buckets, 1)));
 }
 
-/// Squared distance from a point to a box. Rounded, it never exceeds the rounded squared distance
-/// to a point in the box: each step is monotonous. (Contraction to fma is off in the whole
-/// project.)
-float squared_distance(const Eigen::Array3f& low, const Eigen::Array3f& high,
-                       const Eigen::Vector3f& p) {
-  float sum = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float gap = std::max({low[axis] - p[axis], p[axis] - high[axis], 0.0f});
-    sum += gap * gap;
-  }
-  return sum;
-}
-
 }  // namespace
 
-KdTree::KdTree(std::span<const Eigen::Vector3f> points) : first_leaf_(leaf_count(points.size())) {
-  std::vector<IndexedPoint> sorted = indexed(points);
-  const std::uint32_t node_count = 2 * first_leaf_;
-  boxes_.resize(node_count);
-  cells_.resize(node_count);
-  const Eigen::Array3f everything = Eigen::Array3f::Constant(infinity);
-  cells_[1] = {-everything, everything};
+/// Splits points at medians, and fills the boxes and buckets of a tree.
+class KdBuild {
+ public:
+  using Box = KdTree::Box;
+  using Points = std::span<IndexedPoint>;
 
-  // Level by level: the nodes of a level are independent, and so is the result of who splits them.
-  std::vector<std::uint32_t> begins = {0, static_cast<std::uint32_t>(points.size())};
-  for (std::uint32_t level = 1; level < first_leaf_; level *= 2) {
-    std::vector<std::uint32_t> next(2 * level + 1);
-    next.back() = begins.back();
-    parallel_for(level, 1, [&](std::size_t k, std::size_t) {
-      const auto first = sorted.begin() + begins[k], last = sorted.begin() + begins[k + 1];
-      Eigen::Array3f low = everything, high = -everything;
-      for (auto p = first; p != last; ++p) {
-        low = low.min(p->point.array());
-        high = high.max(p->point.array());
-      }
-      int axis = 0;
-      (high - low).maxCoeff(&axis);
-      const auto middle = first + (last - first) / 2;
-      std::nth_element(first, middle, last, [axis](const IndexedPoint& a, const IndexedPoint& b) {
-        return a.point[axis] != b.point[axis] ? a.point[axis] < b.point[axis] : a.index < b.index;
+  explicit KdBuild(KdTree& tree) : tree_(tree) {}
+
+  void run(Points points) {
+    const float all = infinity;
+    tree_.cells_[1] = {{-all, -all, -all, 0}, {all, all, all, 0}};
+    // The top is split level by level, then subtrees are independent of each other; what comes out
+    // does not depend on who does it.
+    std::vector<Points> parts = {points};
+    std::uint32_t level = 1;
+    for (; level < std::min<std::uint32_t>(tree_.first_leaf_, 16); level *= 2) {
+      std::vector<Points> next(2 * level);
+      parallel_for(level, 1, [&](std::size_t k, std::size_t) {
+        const std::size_t left = split(static_cast<std::uint32_t>(level + k), parts[k]);
+        next[2 * k] = parts[k].first(left);
+        next[2 * k + 1] = parts[k].subspan(left);
       });
-      next[2 * k] = begins[k];
-      next[2 * k + 1] = static_cast<std::uint32_t>(middle - sorted.begin());
-      const std::size_t node = level + k;
-      cells_[2 * node] = cells_[2 * node + 1] = cells_[node];
-      if (middle != last)
-        cells_[2 * node].high[axis] = cells_[2 * node + 1].low[axis] = middle->point[axis];
-    });
-    begins = std::move(next);
-  }
-  leaf_begin_ = std::move(begins);
-
-  x_.resize(points.size());
-  y_.resize(points.size());
-  z_.resize(points.size());
-  indices_.resize(points.size());
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    x_[i] = sorted[i].point.x();
-    y_[i] = sorted[i].point.y();
-    z_[i] = sorted[i].point.z();
-    indices_[i] = sorted[i].index;
-  }
-
-  for (std::uint32_t leaf = 0; leaf < first_leaf_; ++leaf) {
-    Box box{everything, -everything};
-    for (std::uint32_t i = leaf_begin_[leaf]; i < leaf_begin_[leaf + 1]; ++i) {
-      box.low = box.low.min(sorted[i].point.array());
-      box.high = box.high.max(sorted[i].point.array());
+      parts = std::move(next);
     }
-    boxes_[first_leaf_ + leaf] = box;
+    parallel_for(level, 1, [&](std::size_t k, std::size_t) {
+      subtree(static_cast<std::uint32_t>(level + k), parts[k]);
+    });
+    for (std::uint32_t node = level - 1; node > 0; --node) join(node);
   }
-  for (std::uint32_t node = first_leaf_ - 1; node > 0; --node) {
-    boxes_[node] = {boxes_[2 * node].low.min(boxes_[2 * node + 1].low),
-                    boxes_[2 * node].high.max(boxes_[2 * node + 1].high)};
+
+ private:
+  void subtree(std::uint32_t node, Points points) {
+    if (node >= tree_.first_leaf_) {
+      fill(node, points);
+      return;
+    }
+    const std::size_t left = split(node, points);
+    subtree(2 * node, points.first(left));
+    subtree(2 * node + 1, points.subspan(left));
+    join(node);
   }
+
+  /// Cuts across the longest side; returns how many points go left.
+  std::size_t split(std::uint32_t node, Points points) {
+    const Box box = bounds(points);
+    std::size_t axis = 0;
+    for (const std::size_t other : {1u, 2u})
+      if (box.high[other] - box.low[other] > box.high[axis] - box.low[axis]) axis = other;
+    const std::size_t left = points.size() / 2;
+    const auto middle = points.begin() + static_cast<std::ptrdiff_t>(left);
+    std::nth_element(points.begin(), middle, points.end(),
+                     [axis](const IndexedPoint& a, const IndexedPoint& b) {
+                       return a.point[axis] < b.point[axis];
+                     });
+    tree_.cells_[2 * node] = tree_.cells_[2 * node + 1] = tree_.cells_[node];
+    if (!points.empty())
+      tree_.cells_[2 * node].high[axis] = tree_.cells_[2 * node + 1].low[axis] =
+          middle->point[axis];
+    return left;
+  }
+
+  static Box bounds(Points points) {
+    Box box{{infinity, infinity, infinity, 0}, {-infinity, -infinity, -infinity, 0}};
+    for (const IndexedPoint& p : points) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.low[axis] = std::min(box.low[axis], p.point[axis]);
+        box.high[axis] = std::max(box.high[axis], p.point[axis]);
+      }
+    }
+    return box;
+  }
+
+  void fill(std::uint32_t node, Points points) {
+    tree_.boxes_[node] = bounds(points);
+    KdTree::Bucket& bucket = tree_.buckets_[node - tree_.first_leaf_];
+    bucket.x.fill(infinity);
+    bucket.y.fill(infinity);
+    bucket.z.fill(infinity);
+    bucket.index.fill(std::numeric_limits<std::uint32_t>::max());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      bucket.x[i] = points[i].point[0];
+      bucket.y[i] = points[i].point[1];
+      bucket.z[i] = points[i].point[2];
+      bucket.index[i] = points[i].index;
+    }
+  }
+
+  void join(std::uint32_t node) {
+    const Box &left = tree_.boxes_[2 * node], &right = tree_.boxes_[2 * node + 1];
+    for (std::size_t axis = 0; axis < 4; ++axis) {
+      tree_.boxes_[node].low[axis] = std::min(left.low[axis], right.low[axis]);
+      tree_.boxes_[node].high[axis] = std::max(left.high[axis], right.high[axis]);
+    }
+  }
+
+  KdTree& tree_;
+};
+
+KdTree::KdTree(std::span<const Eigen::Vector3f> points)
+    : size_(points.size()), first_leaf_(leaf_count(points.size())) {
+  std::vector<IndexedPoint> sorted = indexed(points);
+  boxes_.resize(2 * first_leaf_);
+  cells_.resize(2 * first_leaf_);
+  buckets_.resize(first_leaf_);
+  KdBuild(*this).run(sorted);
 }
 
 /// One walk over a tree, shared by all kinds of queries.
 class KdSearch {
  public:
-  KdSearch(const KdTree& tree, const Eigen::Vector3f& query) : tree_(tree), query_(query) {}
+  using Distances = std::array<float, bucket_size>;
 
-  /// Calls take(position, squared distance) for points of leaves that may hold something within
-  /// bound(), nearer halves first, in the subtree of `node`.
-  template <typename Take, typename Bound>
-  void descend(std::uint32_t node, const Take& take, const Bound& bound) const {
-    if (node >= tree_.first_leaf_) {
-      scan(node, take);
-      return;
+  KdSearch(const KdTree& tree, const Eigen::Vector3f& query)
+      : tree_(tree), query_{query.x(), query.y(), query.z(), 0} {}
+
+  /// Squared distance to the box of a node. Rounded, it never exceeds the rounded squared distance
+  /// to a point in the box: every step is monotonous, and the sum has the same order.
+  float distance(std::uint32_t node) const {
+    const KdTree::Box& box = tree_.boxes_[node];
+    const Four query = std::bit_cast<Four>(query_);
+    const Four below = std::bit_cast<Four>(box.low) - query;
+    const Four above = query - std::bit_cast<Four>(box.high);
+    const Four outside = below > above ? below : above;
+    const Four gap = outside > Four{} ? outside : Four{};
+    const Four squared = gap * gap;
+    return squared[0] + squared[1] + squared[2];
+  }
+
+  /// Squared distances to all places of a bucket; infinite where there is no point.
+  void distances(std::uint32_t leaf, Distances& squared) const {
+    const KdTree::Bucket& bucket = bucket_of(leaf);
+    for (std::size_t i = 0; i < bucket_size; ++i) {
+      const float dx = bucket.x[i] - query_[0], dy = bucket.y[i] - query_[1],
+                  dz = bucket.z[i] - query_[2];
+      squared[i] = dx * dx + dy * dy + dz * dz;
     }
-    std::uint32_t near = 2 * node, far = 2 * node + 1;
-    float near_distance = distance(near), far_distance = distance(far);
-    if (far_distance < near_distance) {
-      std::swap(near, far);
-      std::swap(near_distance, far_distance);
+  }
+
+  const KdTree::Bucket& bucket_of(std::uint32_t leaf) const {
+    return tree_.buckets_[leaf - tree_.first_leaf_];
+  }
+
+  /// Calls visit(leaf) for the leaves of a subtree that may hold something within bound(), nearer
+  /// halves first.
+  template <typename Visit, typename Bound>
+  void descend(std::uint32_t node, const Visit& visit, const Bound& bound) const {
+    struct Pending {
+      std::uint32_t node;
+      float distance;
+    };
+    std::array<Pending, 40> pending;  // one a level at most
+    std::size_t count = 0;
+    while (true) {
+      while (node < tree_.first_leaf_) {
+        std::uint32_t near = 2 * node, far = 2 * node + 1;
+        float near_distance = distance(near), far_distance = distance(far);
+        if (far_distance < near_distance) {
+          std::swap(near, far);
+          std::swap(near_distance, far_distance);
+        }
+        if (near_distance > bound()) break;
+        if (far_distance <= bound()) pending[count++] = {far, far_distance};
+        node = near;
+      }
+      if (node >= tree_.first_leaf_) visit(node);
+      while (count > 0 && pending[count - 1].distance > bound()) --count;
+      if (count == 0) return;
+      node = pending[--count].node;
     }
-    if (near_distance <= bound()) descend(near, take, bound);
-    if (far_distance <= bound()) descend(far, take, bound);
   }
 
   /// The leaf a search without a hint begins with.
@@ -146,142 +221,132 @@ class KdSearch {
     return node;
   }
 
-  template <typename Take>
-  void scan(std::uint32_t node, const Take& take) const {
-    const std::uint32_t begin = tree_.leaf_begin_[node - tree_.first_leaf_];
-    const std::uint32_t count = tree_.leaf_begin_[node - tree_.first_leaf_ + 1] - begin;
-    const float *x = &tree_.x_[begin], *y = &tree_.y_[begin], *z = &tree_.z_[begin];
-    std::array<float, bucket_size> squared;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const float dx = x[i] - query_.x(), dy = y[i] - query_.y(), dz = z[i] - query_.z();
-      squared[i] = dx * dx + dy * dy + dz * dz;
-    }
-    for (std::uint32_t i = 0; i < count; ++i) take(begin + i, squared[i]);
-  }
-
-  float distance(std::uint32_t node) const {
-    const KdTree::Box& box = tree_.boxes_[node];
-    return squared_distance(box.low, box.high, query_);
-  }
-
   /// Whether every point within sqrt(squared_radius) of the query must be in the node's subtree.
   bool answers_for(std::uint32_t node, float squared_radius) const {
     const KdTree::Box& cell = tree_.cells_[node];
-    for (int axis = 0; axis < 3; ++axis) {
+    bool inside = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       const float below = query_[axis] - cell.low[axis], above = cell.high[axis] - query_[axis];
-      if (!(below > 0 && below * below > squared_radius)) return false;
-      if (!(above > 0 && above * above > squared_radius)) return false;
+      const float margin = below < above ? below : above;
+      inside = inside && margin > 0 && margin * margin > squared_radius;
     }
-    return true;
+    return inside;
   }
+
+  std::uint32_t first_leaf() const { return tree_.first_leaf_; }
 
  private:
   const KdTree& tree_;
-  const Eigen::Vector3f& query_;
+  std::array<float, 4> query_;
 };
 
 namespace {
 
+constexpr std::uint32_t no_index = std::numeric_limits<std::uint32_t>::max();
+
 /// The best point so far of a search for one.
 struct Best {
-  const std::vector<std::uint32_t>& indices;
+  const KdSearch& search;
   float squared_distance;
-  std::uint32_t index = std::numeric_limits<std::uint32_t>::max();
-  std::uint32_t position = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t index = no_index;
+  std::uint32_t leaf = 0;  // where it was found
 
-  void take(std::uint32_t at, float squared) {
-    if (squared > squared_distance) return;
-    if (squared == squared_distance && indices[at] > index) return;
-    squared_distance = squared;
-    index = indices[at];
-    position = at;
+  void visit(std::uint32_t visited) {
+    KdSearch::Distances squared;
+    search.distances(visited, squared);
+    // Floats that are not negative are ordered as their bits are, and integers have a fast minimum.
+    std::int32_t least = std::bit_cast<std::int32_t>(infinity);
+    for (const float value : squared) least = std::min(least, std::bit_cast<std::int32_t>(value));
+    const float minimum = std::bit_cast<float>(least);
+    if (minimum > squared_distance) return;
+    const auto& indices = search.bucket_of(visited).index;
+    std::uint32_t lowest = no_index;  // of the points at that distance
+    for (std::size_t i = 0; i < squared.size(); ++i)
+      lowest = std::min(lowest, squared[i] == minimum ? indices[i] : no_index);
+    if (minimum == squared_distance && lowest >= index) return;
+    squared_distance = minimum;
+    index = lowest;
+    leaf = visited;
   }
   std::optional<Neighbour> result() const {
-    if (position == std::numeric_limits<std::uint32_t>::max()) return std::nullopt;
+    if (index == no_index) return std::nullopt;
     return Neighbour{index, squared_distance};
   }
 };
 
+float squared_bound(float max_distance) { return std::min(max_distance * max_distance, largest); }
+
 }  // namespace
 
 std::optional<Neighbour> KdTree::nearest(const Eigen::Vector3f& query, float max_distance) const {
-  if (indices_.empty()) return std::nullopt;
   const KdSearch search(*this, query);
-  Best best{.indices = indices_, .squared_distance = max_distance * max_distance};
+  Best best{.search = search, .squared_distance = squared_bound(max_distance)};
   search.descend(
-      1, [&](std::uint32_t at, float squared) { best.take(at, squared); },
-      [&] { return best.squared_distance; });
+      1, [&](std::uint32_t leaf) { best.visit(leaf); }, [&] { return best.squared_distance; });
   return best.result();
 }
 
 std::optional<Neighbour> KdTree::nearest(const Eigen::Vector3f& query, float max_distance,
                                          std::uint32_t& leaf_hint) const {
-  if (indices_.empty()) return std::nullopt;
   const KdSearch search(*this, query);
-  Best best{.indices = indices_, .squared_distance = max_distance * max_distance};
-  const auto take = [&](std::uint32_t at, float squared) { best.take(at, squared); };
-  const auto bound = [&] { return best.squared_distance; };
+  Best best{.search = search, .squared_distance = squared_bound(max_distance)};
   const bool usable = leaf_hint >= first_leaf_ && leaf_hint < 2 * first_leaf_;
   std::uint32_t node = usable ? leaf_hint : search.likely_leaf();
-  std::uint32_t ended = node, last_position = best.position;
-  const auto keep_leaf = [&](std::uint32_t subtree) {
-    if (best.position == last_position) return;
-    last_position = best.position;
-    ended = subtree;
-  };
-  search.scan(node, take);
-  keep_leaf(node);
+  leaf_hint = node;
+  best.visit(node);
   while (node > 1 && !search.answers_for(node, best.squared_distance)) {
     const std::uint32_t sibling = node ^ 1;
-    if (search.distance(sibling) <= best.squared_distance) search.descend(sibling, take, bound);
-    keep_leaf(sibling);
+    if (search.distance(sibling) <= best.squared_distance) {
+      search.descend(
+          sibling, [&](std::uint32_t leaf) { best.visit(leaf); },
+          [&] { return best.squared_distance; });
+    }
     node /= 2;
   }
-  if (ended < first_leaf_) {  // found somewhere below a sibling: its leaf follows from the position
-    const auto after = std::upper_bound(leaf_begin_.begin(), leaf_begin_.end(), best.position);
-    ended = first_leaf_ + static_cast<std::uint32_t>(after - leaf_begin_.begin()) - 1;
-  }
-  leaf_hint = ended;
+  if (best.leaf != 0) leaf_hint = best.leaf;
   return best.result();
 }
 
 void KdTree::k_nearest(const Eigen::Vector3f& query, std::size_t k, std::vector<Neighbour>& result,
                        float max_distance) const {
   result.clear();
-  if (k == 0 || indices_.empty()) return;
+  if (k == 0) return;
   const KdSearch search(*this, query);
-  float bound = max_distance * max_distance;
-  search.descend(
-      1,
-      [&](std::uint32_t at, float squared) {
-        if (squared > bound) return;
-        const Neighbour found{indices_[at], squared};
-        if (result.size() == k) {
-          if (!(found < result.front())) return;
-          std::pop_heap(result.begin(), result.end());
-          result.back() = found;
-        } else {
-          result.push_back(found);
-        }
-        std::push_heap(result.begin(), result.end());
-        if (result.size() == k) bound = result.front().squared_distance;
-      },
-      [&] { return bound; });
-  std::sort_heap(result.begin(), result.end());
+  float bound = squared_bound(max_distance);
+  const auto insert = [&](const Neighbour& found) {
+    if (result.size() == k) {
+      if (!(found < result.back())) return;
+    } else {
+      result.push_back(found);
+    }
+    std::size_t at = result.size() - 1;
+    for (; at > 0 && found < result[at - 1]; --at) result[at] = result[at - 1];
+    result[at] = found;
+    if (result.size() == k) bound = result.back().squared_distance;
+  };
+  const auto visit = [&](std::uint32_t leaf) {
+    KdSearch::Distances squared;
+    search.distances(leaf, squared);
+    const auto& indices = search.bucket_of(leaf).index;
+    for (std::size_t i = 0; i < squared.size(); ++i)
+      if (squared[i] <= bound) insert({indices[i], squared[i]});
+  };
+  search.descend(1, visit, [&] { return bound; });
 }
 
 void KdTree::within(const Eigen::Vector3f& query, float radius,
                     std::vector<Neighbour>& result) const {
   result.clear();
-  if (indices_.empty()) return;
   const KdSearch search(*this, query);
-  const float bound = radius * radius;
-  search.descend(
-      1,
-      [&](std::uint32_t at, float squared) {
-        if (squared <= bound) result.push_back({indices_[at], squared});
-      },
-      [&] { return bound; });
+  const float bound = squared_bound(radius);
+  const auto visit = [&](std::uint32_t leaf) {
+    KdSearch::Distances squared;
+    search.distances(leaf, squared);
+    const auto& indices = search.bucket_of(leaf).index;
+    for (std::size_t i = 0; i < squared.size(); ++i)
+      if (squared[i] <= bound) result.push_back({indices[i], squared[i]});
+  };
+  search.descend(1, visit, [&] { return bound; });
   std::sort(result.begin(), result.end());
 }
 

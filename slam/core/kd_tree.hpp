@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -24,14 +25,15 @@ struct Neighbour {
 };
 
 /// An exact nearest-neighbour search tree over 3D points (float): a complete binary tree in heap
-/// order (children of node i: 2i and 2i+1, side by side in memory) over buckets of up to 16 points,
-/// with tight boxes. Immutable after construction, so that any number of threads may search it.
+/// order (children of node i: 2i and 2i+1, side by side in memory) over buckets of up to 16 points
+/// that are padded to 16, with tight boxes. Immutable after construction, so that any number of
+/// threads may search it. Distances above 1e19 m count as infinite: such points are never found.
 class KdTree {
  public:
   /// Throws Error if a point is not finite.
   explicit KdTree(std::span<const Eigen::Vector3f> points);
 
-  std::size_t size() const { return indices_.size(); }
+  std::size_t size() const { return size_; }
 
   /// The nearest point not farther than max_distance (m).
   std::optional<Neighbour> nearest(const Eigen::Vector3f& query, float max_distance) const;
@@ -51,16 +53,20 @@ class KdTree {
 
  private:
   struct Box {
-    Eigen::Array3f low, high;
+    std::array<float, 4> low, high;  ///< x y z and a zero, four at a time for the processor
+  };
+  struct Bucket {
+    std::array<float, 16> x, y, z;        ///< beyond the last point: infinity
+    std::array<std::uint32_t, 16> index;  ///< where a point was in the input
   };
   friend class KdSearch;
+  friend class KdBuild;
 
-  std::uint32_t first_leaf_ = 1;           ///< leaves are the nodes [first_leaf_, 2 first_leaf_)
-  std::vector<Box> boxes_;                 ///< tight boxes of the nodes, from 1
-  std::vector<Box> cells_;                 ///< the parts of space the nodes answer for
-  std::vector<std::uint32_t> leaf_begin_;  ///< first point of each leaf, and the end of the last
-  std::vector<float> x_, y_, z_;           ///< points sorted by leaf, one array a coordinate
-  std::vector<std::uint32_t> indices_;     ///< where a sorted point was in the input
+  std::size_t size_ = 0;
+  std::uint32_t first_leaf_ = 1;  ///< leaves are the nodes [first_leaf_, 2 first_leaf_)
+  std::vector<Box> boxes_;        ///< tight boxes of the nodes, from 1
+  std::vector<Box> cells_;        ///< the parts of space the nodes answer for
+  std::vector<Bucket> buckets_;   ///< the points of the leaves
 };
 
 }  // namespace planum
