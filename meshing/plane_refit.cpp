@@ -1,0 +1,149 @@
+#include "meshing/plane_refit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "meshing/region_lookup.hpp"
+#include "slam/core/error.hpp"
+#include "slam/core/parallel.hpp"
+
+namespace planum {
+namespace {
+
+constexpr std::size_t block = 16384;
+constexpr std::size_t max_points = 60'000;  ///< a region; more make no plane better
+constexpr int iterations = 4;
+
+void check(const RefitParams& params, const Regions& regions, const TriangleMesh& mesh,
+           const Cloud& cloud) {
+  if (!(params.max_distance > 0))
+    throw Error("regions: max_distance of the refit is " + std::to_string(params.max_distance) +
+                ", must be above 0");
+  if (regions.of_triangle.size() != mesh.triangles.size())
+    throw Error("regions: they are of a mesh of " + std::to_string(regions.of_triangle.size()) +
+                " triangles, this one has " + std::to_string(mesh.triangles.size()));
+  if (!cloud.normals.empty() && cloud.normals.size() != cloud.points.size())
+    throw Error("regions: the cloud has " + std::to_string(cloud.points.size()) + " points and " +
+                std::to_string(cloud.normals.size()) + " normals");
+}
+
+/// For each point the region it lies in, or Regions::rest. What may lie in several lies in none.
+std::vector<std::uint32_t> regions_of_points(const Regions& regions, const TriangleMesh& mesh,
+                                             const Cloud& cloud, const RefitParams& params) {
+  const RegionLookup lookup(regions, mesh, params.max_distance);
+  const double min_cosine = std::cos(params.max_angle);
+  std::vector<std::uint32_t> region_of(cloud.points.size(), Regions::rest);
+  const auto agrees = [&](std::size_t i, std::uint32_t region) {
+    const Plane& plane = regions.regions[region].plane;
+    const Eigen::Vector3d p = cloud.points[i].cast<double>();
+    if (std::abs(plane.signed_distance(p)) > params.max_distance) return false;
+    return cloud.normals.empty() || cloud.normals[i].cast<double>().dot(plane.normal) >= min_cosine;
+  };
+  parallel_for(cloud.points.size(), block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!cloud.points[i].allFinite())
+        throw Error("cloud: point " + std::to_string(i) + " is not finite");
+      const RegionLookup::Candidates* candidates = lookup.near(cloud.points[i]);
+      if (!candidates) continue;
+      int matches = 0;
+      for (const std::uint32_t region : *candidates)
+        if (region != Regions::rest && agrees(i, region)) {
+          region_of[i] = region;
+          ++matches;
+        }
+      if (matches > 1) region_of[i] = Regions::rest;
+    }
+  });
+  return region_of;
+}
+
+/// The points of each region, in their order, at most max_points evenly picked.
+std::vector<std::vector<std::uint32_t>> points_of_regions(
+    const std::vector<std::uint32_t>& region_of, std::size_t regions) {
+  std::vector<std::size_t> count(regions, 0), seen(regions, 0);
+  for (const std::uint32_t region : region_of)
+    if (region != Regions::rest) ++count[region];
+  std::vector<std::vector<std::uint32_t>> points(regions);
+  for (std::uint32_t i = 0; i < region_of.size(); ++i) {
+    const std::uint32_t region = region_of[i];
+    if (region == Regions::rest) continue;
+    const std::size_t step = (count[region] + max_points - 1) / max_points;
+    if (seen[region]++ % step == 0) points[region].push_back(i);
+  }
+  return points;
+}
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// A plane near `plane` by iteratively reweighted least squares over some points.
+Plane robust_plane(Plane plane, const Cloud& cloud, const std::vector<std::uint32_t>& points) {
+  const Eigen::Vector3d origin = cloud.points[points.front()].cast<double>();
+  plane.offset -= plane.normal.dot(origin);
+  std::vector<double> residuals(points.size());
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    const auto at = [&](std::size_t i) -> Eigen::Vector3d {
+      return cloud.points[points[i]].cast<double>() - origin;
+    };
+    for (std::size_t i = 0; i < points.size(); ++i)
+      residuals[i] = std::abs(plane.signed_distance(at(i)));
+    // 1.4826 makes the median residual a standard deviation, 4.685 is Tukey's constant.
+    const double limit = std::max(4.685 * 1.4826 * median(residuals), 1e-6);
+    PointMoments moments;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector3d p = at(i);
+      const double ratio = plane.signed_distance(p) / limit;
+      if (std::abs(ratio) < 1) moments.add(p, (1 - ratio * ratio) * (1 - ratio * ratio));
+    }
+    const std::optional<PlaneFit> fit = fit_plane(moments);
+    if (!fit) break;
+    const double side = fit->plane.normal.dot(plane.normal) < 0 ? -1 : 1;
+    plane = {side * fit->plane.normal, side * fit->plane.offset};
+  }
+  plane.offset += plane.normal.dot(origin);
+  return plane;
+}
+
+/// For each region, how far its vertices are from a plane at most (m).
+std::vector<double> largest_distances(const Regions& regions, const TriangleMesh& mesh,
+                                      const std::vector<Plane>& planes) {
+  std::vector<double> largest(planes.size(), 0);
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    const std::uint32_t region = regions.of_triangle[f];
+    if (region == Regions::rest) continue;
+    for (const std::uint32_t v : mesh.triangles[f])
+      largest[region] =
+          std::max(largest[region],
+                   std::abs(planes[region].signed_distance(mesh.vertices[v].cast<double>())));
+  }
+  return largest;
+}
+
+}  // namespace
+
+Regions refit_planes(const Regions& regions, const TriangleMesh& mesh, const Cloud& cloud,
+                     const RefitParams& params) {
+  check(params, regions, mesh, cloud);
+  const auto points =
+      points_of_regions(regions_of_points(regions, mesh, cloud, params), regions.regions.size());
+  std::vector<Plane> before, after;
+  for (const Region& region : regions.regions) before.push_back(region.plane);
+  after = before;
+  parallel_for(points.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r)
+      if (points[r].size() >= std::max<std::size_t>(params.min_points, 3))
+        after[r] = robust_plane(before[r], cloud, points[r]);
+  });
+  const std::vector<double> was = largest_distances(regions, mesh, before);
+  const std::vector<double> is = largest_distances(regions, mesh, after);
+  Regions result = regions;
+  for (std::size_t r = 0; r < after.size(); ++r)
+    if (is[r] <= was[r] + params.max_distance) result.regions[r].plane = after[r];
+  return result;
+}
+
+}  // namespace planum

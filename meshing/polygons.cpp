@@ -1,0 +1,204 @@
+#include "meshing/polygons.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "meshing/border_repair.hpp"
+#include "meshing/components.hpp"
+#include "meshing/creases.hpp"
+#include "meshing/face_geometry.hpp"
+#include "meshing/gap_closing.hpp"
+#include "meshing/geos_polygons.hpp"
+#include "meshing/half_edge.hpp"
+#include "meshing/plane_geometry.hpp"
+#include "meshing/polygon_drafts.hpp"
+#include "meshing/rest_surface.hpp"
+#include "slam/core/error.hpp"
+
+namespace planum {
+namespace {
+
+void check(const TriangleMesh& mesh, const Regions& regions, const PolygonParams& params) {
+  if (regions.of_triangle.size() != mesh.triangles.size())
+    throw Error("polygons: the regions are of a mesh of " +
+                std::to_string(regions.of_triangle.size()) + " triangles, this one has " +
+                std::to_string(mesh.triangles.size()));
+  for (const std::uint32_t label : regions.of_triangle)
+    if (label != Regions::rest && label >= regions.regions.size())
+      throw Error("polygons: a triangle is in region " + std::to_string(label) + " of " +
+                  std::to_string(regions.regions.size()));
+  const auto not_negative = [](const char* name, double value) {
+    if (!(value >= 0))
+      throw Error("polygons: " + std::string(name) + " is " + std::to_string(value) +
+                  ", must be at least 0");
+  };
+  not_negative("max_error", params.max_error);
+  not_negative("max_move", params.max_move);
+  not_negative("crease_reach", params.crease_reach);
+  not_negative("max_gap", params.max_gap);
+  not_negative("min_component", params.min_component);
+  not_negative("min_hole", params.min_hole);
+}
+
+BorderNetwork border_network(TriangleMesh& mesh, Regions regions, HalfEdges& edges,
+                             const PolygonParams& params) {
+  close_gaps(mesh, edges, params.max_gap);
+  regions.of_triangle.resize(mesh.triangles.size(), Regions::rest);
+  BorderNetwork network;
+  network.regions = regions.regions;
+  network.labels =
+      closed_creases(regions, edges, face_geometry(mesh),
+                     {.reach = params.crease_reach, .min_component = params.min_component});
+  network.component_of = components(edges, network.labels).of_triangle;
+  network.chains = border_chains(edges, network.labels);
+  network.rings = border_rings(edges, network.labels, network.chains);
+  network.corners =
+      snapped_corners(regions.regions, mesh, edges, network.labels, {.max_move = params.max_move});
+  for (const BorderChain& chain : network.chains) {
+    network.shapes.push_back(chain_shape(chain, edges, network.corners, regions.regions));
+    simplify(network.shapes.back(), network.corners.points, params.max_error);
+  }
+  return network;
+}
+
+/// Gives snapped points their places in the map when a polygon first uses them.
+class MapBuilder {
+ public:
+  MapBuilder(const std::vector<Eigen::Vector3d>& points)
+      : points_(points), name_(points.size(), HalfEdges::none) {}
+
+  void add(const PolygonDraft& draft, const Plane& plane) {
+    std::vector<Ring> rings;
+    for (const Ring& ring : draft.rings) {
+      rings.emplace_back();
+      for (const std::uint32_t v : ring) rings.back().push_back(named(v));
+    }
+    add(rings, plane);
+  }
+
+  /// A draft that crosses itself in spite of all: what it covers. Crossings become new vertices.
+  void add_made_valid(const PolygonDraft& draft, const Plane& plane) {
+    const PlaneFrame frame(plane);
+    std::map<std::pair<double, double>, std::uint32_t> corners;
+    for (const Ring& ring : draft.rings)
+      for (const std::uint32_t v : ring) {
+        const Eigen::Vector2d p = frame.flat(points_[v]);
+        corners.emplace(std::pair(p.x(), p.y()), named(v));
+      }
+    for (std::vector<Ring2d>& pieces : made_valid(flat_rings(draft.rings, plane, points_))) {
+      std::vector<Ring> rings;
+      for (Ring2d& piece : pieces) {
+        if ((signed_area(piece) > 0) != rings.empty()) std::reverse(piece.begin(), piece.end());
+        rings.emplace_back();
+        for (const Eigen::Vector2d& p : piece) {
+          const auto [at, is_new] = corners.try_emplace({p.x(), p.y()}, map_.vertices.size());
+          if (is_new) map_.vertices.push_back(frame.raised(p));
+          rings.back().push_back(at->second);
+        }
+      }
+      if (signed_area(pieces.front()) > min_piece) add(rings, plane);
+    }
+  }
+
+  PolygonMap built() {
+    std::stable_sort(map_.polygons.begin(), map_.polygons.end(),
+                     [](const MapPolygon& a, const MapPolygon& b) { return a.area > b.area; });
+    return std::move(map_);
+  }
+
+ private:
+  static constexpr double min_piece = 1e-4;  ///< m^2
+
+  std::uint32_t named(std::uint32_t point) {
+    if (name_[point] == HalfEdges::none) {
+      name_[point] = static_cast<std::uint32_t>(map_.vertices.size());
+      map_.vertices.push_back(points_[point]);
+    }
+    return name_[point];
+  }
+
+  void add(const std::vector<Ring>& rings, const Plane& plane) {
+    MapPolygon polygon{plane, rings.front(), {rings.begin() + 1, rings.end()}, 0};
+    for (const Ring2d& ring : flat_rings(rings, plane, map_.vertices))
+      polygon.area += signed_area(ring);
+    map_.polygons.push_back(std::move(polygon));
+  }
+
+  const std::vector<Eigen::Vector3d>& points_;
+  std::vector<std::uint32_t> name_;
+  PolygonMap map_;
+};
+
+/// Scraps go to the rest.
+void add_triangles(RestSurface& rest, const PolygonDraft& scrap, const Plane& plane) {
+  const auto triangles = constrained_delaunay(flat_rings(scrap.rings, plane, rest.points));
+  if (!triangles) return;
+  Ring corners;
+  for (const Ring& ring : scrap.rings) corners.insert(corners.end(), ring.begin(), ring.end());
+  for (const auto& t : *triangles)
+    rest.triangles.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
+}
+
+TriangleMesh mesh_of(const RestSurface& rest) {
+  TriangleMesh mesh;
+  std::vector<std::uint32_t> name(rest.points.size(), HalfEdges::none);
+  for (auto t : rest.triangles) {
+    for (std::uint32_t& p : t) {
+      if (name[p] == HalfEdges::none) {
+        name[p] = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.push_back(rest.points[p].cast<float>());
+      }
+      p = name[p];
+    }
+    mesh.triangles.push_back(t);
+  }
+  return mesh;
+}
+
+PolygonMap finished(BorderNetwork& network, RestSurface& rest, const DraftParams& params) {
+  std::copy_n(rest.points.begin(), network.corners.points.size(), network.corners.points.begin());
+  MapBuilder builder(network.corners.points);
+  for (const PolygonDraft& draft : polygon_drafts(network, params)) {
+    const Plane& plane = network.regions[draft.region].plane;
+    if (draft.is_scrap)
+      add_triangles(rest, draft, plane);
+    else if (is_valid_polygon(flat_rings(draft.rings, plane, network.corners.points)))
+      builder.add(draft, plane);
+    else
+      builder.add_made_valid(draft, plane);
+  }
+  PolygonMap map = builder.built();
+  map.rest = mesh_of(rest);
+  return map;
+}
+
+}  // namespace
+
+PolygonParams polygon_params(double cell) {
+  PolygonParams params;
+  const double scale = cell / 0.05;
+  params.max_error *= scale;
+  params.max_move *= scale;
+  params.crease_reach *= scale;
+  params.max_gap *= scale;
+  params.min_component *= scale * scale;
+  params.min_hole *= scale * scale;
+  return params;
+}
+
+PolygonMap polygonize(const TriangleMesh& mesh, const Regions& regions,
+                      const PolygonParams& params) {
+  check(mesh, regions, params);
+  const DraftParams draft_params{.min_hole = params.min_hole,
+                                 .min_scrap = params.min_component / 10};
+  TriangleMesh whole = mesh;
+  HalfEdges edges = half_edges(mesh);
+  BorderNetwork network = border_network(whole, regions, edges, params);
+  uncross_borders(network, draft_params, params.max_error);
+  RestSurface rest = rest_surface(whole, edges, network.labels, network.corners, network.shapes);
+  return finished(network, rest, draft_params);
+}
+
+}  // namespace planum

@@ -1,0 +1,221 @@
+#include "meshing/regions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include <Eigen/Cholesky>
+
+#include "meshing/face_geometry.hpp"
+#include "meshing/half_edge.hpp"
+#include "meshing/region_merging.hpp"
+#include "meshing/region_seeds.hpp"
+#include "slam/core/error.hpp"
+
+namespace planum {
+namespace {
+
+void check(const RegionParams& params) {
+  const auto at_least = [](const char* name, double value, double limit, bool allow_equal) {
+    if (value > limit || (allow_equal && value == limit)) return;
+    throw Error("regions: " + std::string(name) + " is " + std::to_string(value) + ", must be " +
+                (allow_equal ? "at least " : "above ") + std::to_string(limit));
+  };
+  at_least("max_angle", params.max_angle, 0, false);
+  at_least("max_distance", params.max_distance, 0, false);
+  at_least("max_seed_spread", params.max_seed_spread, 0, false);
+  at_least("min_area", params.min_area, 0, true);
+  at_least("min_radius", params.min_radius, 0, true);
+  at_least("merge_angle", params.merge_angle, 0, true);
+  at_least("merge_distance", params.merge_distance, 0, true);
+}
+
+/// Grows one region after the other over a mesh.
+class Grower {
+ public:
+  Grower(const TriangleMesh& mesh, const HalfEdges& edges, const RegionParams& params)
+      : mesh_(mesh),
+        edges_(edges),
+        params_(params),
+        faces_(face_geometry(mesh)),
+        smooth_(smoothed_faces(edges, faces_, exact_area(params))),
+        owner_(mesh.triangles.size(), Regions::rest),
+        tried_(mesh.triangles.size(), false),
+        asked_(mesh.triangles.size(), Regions::rest) {}
+
+  Regions grown() {
+    Regions regions;
+    for (const std::uint32_t seed : seeds(smooth_, params_.max_seed_spread)) {
+      if (owner_[seed] != Regions::rest || tried_[seed]) continue;
+      const auto id = static_cast<std::uint32_t>(regions.regions.size());
+      if (const auto region = grown_from(seed, id)) regions.regions.push_back(*region);
+    }
+    regions.of_triangle = owner_;
+    return regions;
+  }
+
+ private:
+  /// m^2; noise of max_distance does not turn a triangle of this size by much.
+  static double exact_area(const RegionParams& params) {
+    return 8 * params.max_distance * params.max_distance;
+  }
+
+  std::optional<Region> grown_from(std::uint32_t seed, std::uint32_t id) {
+    start(seed, id);
+    for (int round = 0; round < max_rounds && spread_from_front(); ++round) {
+    }
+    drop_misfits();
+    Region region{plane_, 0};
+    for (const std::uint32_t f : members_) region.area += faces_.area[f];
+    const bool enough = members_.size() >= min_members || region.area >= exact_area(params_);
+    if (enough && !is_bent()) return region;
+    for (const std::uint32_t f : members_) owner_[f] = Regions::rest;
+    return std::nullopt;
+  }
+
+  void start(std::uint32_t seed, std::uint32_t id) {
+    id_ = id;
+    ++growth_;
+    origin_ = smooth_.broad_centre[seed];
+    plane_ = {smooth_.broad_normal[seed], smooth_.broad_normal[seed].dot(origin_)};
+    moments_ = {};
+    members_.clear();
+    front_.assign(1, seed);
+    refit_at_ = first_refit;
+  }
+
+  bool fits(std::uint32_t f) const {
+    return std::abs(plane_.signed_distance(faces_.centroid[f])) <= params_.max_distance &&
+           (smooth_.normal[f].dot(plane_.normal) >= min_cosine_ || faces_.area[f] == 0);
+  }
+
+  /// Takes what fits of the front and goes on from there; what does not fit is the new front. Says
+  /// whether another round makes sense.
+  bool spread_from_front() {
+    const std::size_t before = members_.size();
+    std::vector<std::uint32_t> queue;
+    queue.swap(front_);
+    for (std::size_t at = 0; at < queue.size(); ++at) {
+      const std::uint32_t f = queue[at];
+      if (owner_[f] != Regions::rest) continue;
+      if (!fits(f)) {
+        front_.push_back(f);
+        continue;
+      }
+      take(f);
+      for (std::uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
+        const std::uint32_t back = edges_.opposite[h];
+        if (back == HalfEdges::none || owner_[back / 3] != Regions::rest) continue;
+        if (asked_[back / 3] == growth_) continue;
+        asked_[back / 3] = growth_;
+        queue.push_back(back / 3);
+      }
+    }
+    refit();
+    return members_.size() > before && !front_.empty();
+  }
+
+  void take(std::uint32_t f) {
+    owner_[f] = id_;
+    tried_[f] = true;
+    members_.push_back(f);
+    // Weights in mm^2: fit_plane() counts points and wants three.
+    add_triangle(moments_, mesh_, f, faces_.area[f] * 1e6, origin_);
+    if (members_.size() < refit_at_) return;
+    refit();
+    refit_at_ = members_.size() * 3 / 2;
+  }
+
+  void refit() {
+    std::optional<PlaneFit> fit = fit_plane(moments_);
+    if (!fit) return;
+    if (fit->plane.normal.dot(plane_.normal) < 0) {
+      fit->plane.normal *= -1;
+      fit->plane.offset *= -1;
+    }
+    plane_ = relative_to(fit->plane, -origin_);
+  }
+
+  /// What was taken by an earlier, poorer plane.
+  void drop_misfits() {
+    const auto misfit = [&](std::uint32_t f) {
+      if (fits(f)) return false;
+      owner_[f] = Regions::rest;
+      return true;
+    };
+    const auto end = std::remove_if(members_.begin(), members_.end(), misfit);
+    if (end == members_.end()) return;
+    members_.erase(end, members_.end());
+    moments_ = {};
+    for (const std::uint32_t f : members_)
+      add_triangle(moments_, mesh_, f, faces_.area[f] * 1e6, origin_);
+    refit();
+  }
+
+  /// Fits height = a + b u + c v + d u^2 + e u v + f v^2 over the plane, and compares the curvature
+  /// with the limit. Triangles that lean away are left out: the rounded rim of a narrow plane would
+  /// make it look bent.
+  bool is_bent() const {
+    if (params_.min_radius <= 0) return false;
+    const Eigen::Vector3d u = plane_.normal.unitOrthogonal(), v = plane_.normal.cross(u);
+    Eigen::Matrix<double, 6, 6> normal_matrix = Eigen::Matrix<double, 6, 6>::Zero();
+    Eigen::Matrix<double, 6, 1> right_side = Eigen::Matrix<double, 6, 1>::Zero();
+    const double min_cosine = std::cos(params_.max_angle / 2);
+    for (const std::uint32_t f : members_) {
+      if (smooth_.normal[f].dot(plane_.normal) < min_cosine) continue;
+      const Eigen::Vector3d p = faces_.centroid[f] - origin_;
+      const double x = p.dot(u), y = p.dot(v);
+      Eigen::Matrix<double, 6, 1> row;
+      row << 1, x, y, x * x, x * y, y * y;
+      normal_matrix.noalias() += faces_.area[f] * row * row.transpose();
+      right_side += faces_.area[f] * plane_.signed_distance(faces_.centroid[f]) * row;
+    }
+    const Eigen::Matrix<double, 6, 1> q = normal_matrix.ldlt().solve(right_side);
+    if (!q.allFinite()) return false;
+    // Largest principal curvature of the paraboloid.
+    const double curvature = std::abs(q[3] + q[5]) + std::hypot(q[3] - q[5], q[4]);
+    return curvature * params_.min_radius > 1;
+  }
+
+  static constexpr int max_rounds = 10;
+  static constexpr std::size_t first_refit = 24, min_members = 4;
+
+  const TriangleMesh& mesh_;
+  const HalfEdges& edges_;
+  const RegionParams& params_;
+  const FaceGeometry faces_;
+  const SmoothedFaces smooth_;
+  const double min_cosine_ = std::cos(params_.max_angle);
+  std::vector<std::uint32_t> owner_;
+  std::vector<bool> tried_;           ///< was once in a region: no seed again
+  std::vector<std::uint32_t> asked_;  ///< the last growth that looked at this triangle
+
+  std::uint32_t id_ = 0, growth_ = 0;
+  Plane plane_;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+  PointMoments moments_;
+  std::vector<std::uint32_t> members_, front_;
+  std::size_t refit_at_ = 0;
+};
+
+}  // namespace
+
+RegionParams region_params(double cell) {
+  RegionParams params;
+  const double scale = cell / 0.05;
+  params.max_distance *= scale;
+  params.min_area *= scale * scale;
+  params.min_radius *= scale;
+  params.merge_distance *= scale;
+  return params;
+}
+
+Regions grow_planes(const TriangleMesh& mesh, const RegionParams& params) {
+  check(params);
+  const HalfEdges edges = half_edges(mesh);
+  Regions regions = Grower(mesh, edges, params).grown();
+  return merged(regions, mesh, edges, params);
+}
+
+}  // namespace planum
