@@ -47,7 +47,7 @@ std::uint32_t vertex_index(std::string_view word, const TextReader& reader, std:
   const auto count = static_cast<long long>(vertices);
   const long long from_zero = index > 0 ? index - 1 : count + index;
   if (index == 0 || from_zero < 0 || from_zero >= count)
-    reader.fail(fmt::format("vertex {} of {}", index, count));
+    reader.fail(fmt::format("there is no vertex {}, there are {} so far", index, count));
   return static_cast<std::uint32_t>(from_zero);
 }
 
@@ -65,7 +65,7 @@ void read_face(TextReader& reader, Reading& reading) {
   }
 }
 
-void check_names(const LabelledMesh& labelled, const std::filesystem::path& path) {
+void check(const LabelledMesh& labelled, const std::filesystem::path& path) {
   for (const std::string& name : labelled.names)
     if (name.empty() || name.find_first_of("\r\n") != std::string::npos || name.front() == ' ' ||
         name.back() == ' ')
@@ -74,6 +74,9 @@ void check_names(const LabelledMesh& labelled, const std::filesystem::path& path
   if (labelled.group.size() != labelled.mesh.triangles.size())
     throw Error(fmt::format("{}: {} triangles with {} groups", path.string(),
                             labelled.mesh.triangles.size(), labelled.group.size()));
+  for (const std::uint32_t group : labelled.group)
+    if (group >= labelled.names.size())
+      throw Error(fmt::format("{}: group {} has no name", path.string(), group));
 }
 
 }  // namespace
@@ -97,7 +100,7 @@ LabelledMesh read_obj(const std::filesystem::path& path) {
 
 void write_obj(const std::filesystem::path& path, const LabelledMesh& labelled,
                const ObjParams& params) {
-  check_names(labelled, path);
+  check(labelled, path);
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
   if (!params.material_library.empty()) fmt::format_to(out, "mtllib {}\n", params.material_library);
@@ -106,7 +109,7 @@ void write_obj(const std::filesystem::path& path, const LabelledMesh& labelled,
   for (std::size_t i = 0; i < labelled.mesh.triangles.size(); ++i) {
     const std::uint32_t group = labelled.group[i];
     if (i == 0 || group != labelled.group[i - 1])
-      fmt::format_to(out, "usemtl {}\n", labelled.names.at(group));
+      fmt::format_to(out, "usemtl {}\n", labelled.names[group]);
     const auto& [a, b, c] = labelled.mesh.triangles[i];
     // Up to 2^32: one more than fits the type.
     fmt::format_to(out, "f {} {} {}\n", std::uint64_t{a} + 1, std::uint64_t{b} + 1,

@@ -19,7 +19,8 @@ struct ObjParams {
 };
 
 /// Writes vertices, and triangles in their order with a `usemtl` line wherever the group changes.
-/// Vertices come back exactly. Throws Error if a name is not one line of text.
+/// Vertices come back exactly. Throws Error if a triangle has no group or a group's name
+/// is not one line of text.
 void write_obj(const std::filesystem::path& path, const LabelledMesh& labelled,
                const ObjParams& params = {});
 

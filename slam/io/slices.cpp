@@ -99,11 +99,12 @@ Slice read_slice(TextReader& reader, std::size_t expected_ranges) {
 void check_ranges(const TextReader& reader, const Header& header, const RawScan& scan,
                   std::size_t first_line) {
   const std::size_t count = scan.slices.back().ranges.size();
-  if (count < 2) reader.fail(fmt::format("expected time, tilt and ranges, got {} ranges", count));
   const std::size_t first_count = scan.slices.front().ranges.size();
   if (count != first_count)
     reader.fail(
         fmt::format("expected {} ranges as in line {}, got {}", first_count, first_line, count));
+  if (count < 2)
+    reader.fail(fmt::format("expected time, tilt and at least 2 ranges, got {}", count));
   if (header.beams && *header.beams != static_cast<double>(count))
     reader.fail(fmt::format("expected {} ranges as the header says, got {}", *header.beams, count));
 }
