@@ -16,6 +16,10 @@ constexpr std::size_t blocks_per_task = 16;
 /// Added to the variance of planes, so that noise-free data cannot have infinite weights.
 constexpr double least_variance = 1e-6;  // m^2
 
+/// A patch whose middle is this many standard deviations off the plane is left out.
+constexpr double most_deviations = 1.3;
+constexpr int trimming_rounds = 3;
+
 void add_point(ViewPatch& patch, const Eigen::Vector3d& p) {
   const std::array<double, 10> terms = {1,
                                         p.x(),
@@ -171,6 +175,22 @@ PatchPlane plane_around(const PatchGrid& grid, std::uint32_t self, const Neighbo
   sum = sum_of(
       grid, neighbours, [&](const ViewPatch& p) { return p.view.dot(normal) > 0; }, kept);
   if (kept != taken) shape = shape_of(sum);
+  // Patches off the plane are of another surface: what is left without them has a sharp crease.
+  for (int round = 0; shape && round < trimming_rounds; ++round) {
+    const Eigen::Vector3d across = shape->normal;
+    const double farthest = most_deviations * std::sqrt(shape->variances[0] + least_variance);
+    taken = kept;
+    sum = sum_of(
+        grid, neighbours,
+        [&](const ViewPatch& p) {
+          const auto& m = p.moments;
+          const Eigen::Vector3d mean = Eigen::Vector3d(m[1], m[2], m[3]) / m[0];
+          return p.view.dot(normal) > 0 && std::abs(across.dot(mean - shape->centroid)) <= farthest;
+        },
+        kept);
+    if (kept == taken) break;
+    shape = shape_of(sum);
+  }
   if (!shape || !well_formed(*shape, sum[0], params)) return {};
   PatchPlane plane;
   plane.normal = shape->normal.cast<float>();

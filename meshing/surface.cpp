@@ -1,0 +1,19 @@
+#include "meshing/surface.hpp"
+
+#include "meshing/distance_field.hpp"
+#include "meshing/marching_cubes.hpp"
+#include "slam/core/error.hpp"
+
+namespace planum {
+
+TriangleMesh reconstruct(const Cloud& cloud, const SurfaceParams& params,
+                         const Progress& progress) {
+  TriangleMesh mesh = marching_cubes(distance_field(cloud, params, progress));
+  if (mesh.triangles.empty())
+    throw Error("mesh: no surface in the cloud: its points are too far apart for cells of " +
+                    std::to_string(params.voxel) + " m",
+                ErrorKind::no_result);
+  return mesh;
+}
+
+}  // namespace planum
