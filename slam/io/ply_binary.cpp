@@ -2,6 +2,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <type_traits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -110,20 +111,42 @@ class BinaryRows : public PlyRows {
   }
 
   /// Takes `rows` values that are `step` bytes apart into the rows of a column from `first` on.
+  void copy_column(const char* bytes, PlyType type, std::size_t step, std::size_t rows,
+                   std::size_t first, const PlyColumn& column, const PlyElement& element) const {
+    with_type(type, [&](auto zero) {
+      using Value = decltype(zero);
+      if (column.floats)
+        copy_floats<Value>(bytes, step, rows, column.floats + first * column.stride, column.stride);
+      else
+        copy_indices<Value>(bytes, step, rows, column.indices + first * column.stride,
+                            column.stride, element);
+    });
+  }
+
   template <class Value>
-  void copy_column(const char* bytes, std::size_t step, std::size_t rows, std::size_t first,
-                   const PlyColumn& column, const PlyElement& element) const {
-    for (std::size_t i = 0; i < rows; ++i) {
-      const Value value = value_at<Value>(bytes + i * step, swapped_);
-      const std::size_t to = (first + i) * column.stride;
-      if (column.floats) {
-        column.floats[to] = static_cast<float>(value);
-      } else {
-        const auto index = ply_index(static_cast<double>(value));
-        if (!index) fail_no_index(element, static_cast<double>(value));
-        column.indices[to] = *index;
-      }
-    }
+  void copy_floats(const char* bytes, std::size_t step, std::size_t rows, float* to,
+                   std::size_t stride) const {
+    if (swapped_)
+      for (std::size_t i = 0; i < rows; ++i)
+        to[i * stride] = static_cast<float>(value_at<Value>(bytes + i * step, true));
+    else
+      for (std::size_t i = 0; i < rows; ++i)
+        to[i * stride] = static_cast<float>(value_at<Value>(bytes + i * step, false));
+  }
+
+  template <class Value>
+  void copy_indices(const char* bytes, std::size_t step, std::size_t rows, std::uint32_t* to,
+                    std::size_t stride, const PlyElement& element) const {
+    for (std::size_t i = 0; i < rows; ++i)
+      to[i * stride] = index_from(value_at<Value>(bytes + i * step, swapped_), element);
+  }
+
+  template <class Value>
+  std::uint32_t index_from(Value value, const PlyElement& element) const {
+    if constexpr (std::is_unsigned_v<Value>) return value;
+    const std::optional<std::uint32_t> index = ply_index(static_cast<double>(value));
+    if (!index) fail_no_index(element, static_cast<double>(value));
+    return *index;
   }
 
   /// Rows of the same length: many at a time, column by column.
@@ -136,9 +159,7 @@ class BinaryRows : public PlyRows {
       for (std::size_t p = 0; p < element.properties.size(); ++p) {
         const PlyType type = element.properties[p].type;
         if (const PlyColumn* column = find_column(request, p))
-          with_type(type, [&](auto zero) {
-            copy_column<decltype(zero)>(bytes, row_bytes, rows, first, *column, element);
-          });
+          copy_column(bytes, type, row_bytes, rows, first, *column, element);
         bytes += size_of(type);
       }
     }
@@ -155,9 +176,7 @@ class BinaryRows : public PlyRows {
         }
         const char* bytes = take(size_of(property.type), element);
         if (const PlyColumn* column = find_column(request, p))
-          with_type(property.type, [&](auto zero) {
-            copy_column<decltype(zero)>(bytes, 0, 1, row, *column, element);
-          });
+          copy_column(bytes, property.type, 0, 1, row, *column, element);
       }
     }
   }
@@ -171,13 +190,10 @@ class BinaryRows : public PlyRows {
     const std::size_t value_bytes = size_of(property.type);
     const char* bytes = take(*count * value_bytes, element);
     if (!request.list || request.list_property != p) return;
-    list_.clear();
-    for (std::uint32_t i = 0; i < *count; ++i, bytes += value_bytes) {
-      const double value = number_at(bytes, property.type);
-      const std::optional<std::uint32_t> index = ply_index(value);
-      if (!index) fail_no_index(element, value);
-      list_.push_back(*index);
-    }
+    list_.resize(*count);
+    with_type(property.type, [&](auto zero) {
+      copy_indices<decltype(zero)>(bytes, value_bytes, *count, list_.data(), 1, element);
+    });
     request.list(list_);
   }
 
