@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+
+#include "meshing/triangulation.hpp"
+#include "tools/maps/labelled_map.hpp"
+
+namespace planum {
+
+/// Writes the map as triangles: label colours, and for each triangle `label` (the number of the
+/// label, -1 for what is no polygon) and `polygon` (its id, or -1).
+void write_map_ply(const std::filesystem::path& path, const TriangulatedMap& mesh,
+                   const Labels& labels);
+
+/// Writes PATH and, beside it, the same name with .mtl: one material a label ("floor", "wall" ...;
+/// "rest" for what is no polygon).
+void write_map_obj(const std::filesystem::path& path, const TriangulatedMap& mesh,
+                   const Labels& labels);
+
+}  // namespace planum
