@@ -1,8 +1,9 @@
 #include "labeling/label_scene.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
+#include <Eigen/Geometry>
 
 namespace planum {
 namespace {
@@ -114,9 +115,8 @@ std::vector<PlanSegment> cross_section(const LevelPolygon& polygon, double heigh
       points.push_back((1 - t) * a.head<2>() + t * b.head<2>());
     }
   const Eigen::Vector2d along(-polygon.plane.normal.y(), polygon.plane.normal.x());
-  std::sort(points.begin(), points.end(), [&](const auto& a, const auto& b) {
-    return along.dot(a) < along.dot(b);
-  });
+  std::sort(points.begin(), points.end(),
+            [&](const auto& a, const auto& b) { return along.dot(a) < along.dot(b); });
   std::vector<PlanSegment> segments;
   for (std::size_t i = 0; i + 1 < points.size(); i += 2)
     segments.push_back({points[i], points[i + 1]});
@@ -134,7 +134,8 @@ std::vector<Eigen::Vector2d> plan_samples(const LevelPolygon& polygon, int count
   std::vector<Eigen::Vector2d> samples;
   for (double y = step / 2; y < size.y(); y += step)
     for (double x = step / 2; x < size.x(); x += step)
-      if (polygon.covers(low + Eigen::Vector2d(x, y))) samples.push_back(low + Eigen::Vector2d(x, y));
+      if (polygon.covers(low + Eigen::Vector2d(x, y)))
+        samples.push_back(low + Eigen::Vector2d(x, y));
   if (samples.empty() && polygon.covers(low + size / 2)) samples.push_back(low + size / 2);
   return samples;
 }

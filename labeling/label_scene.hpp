@@ -1,7 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "labeling/labels.hpp"
 #include "meshing/plane_geometry.hpp"

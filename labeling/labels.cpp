@@ -51,12 +51,13 @@ void label_levels(const LabelScene& scene, Attitude attitude, Label label,
   const auto is_at_a_level = [&](std::size_t i) {
     const LevelPolygon& it = scene.polygons[i];
     if (it.area >= params.min_level_area) return true;
-    return std::any_of(scene.polygons.begin(), scene.polygons.end(), [&](const LevelPolygon& other) {
-      const auto j = static_cast<std::size_t>(&other - scene.polygons.data());
-      return other.attitude == attitude && other.area >= params.min_level_area &&
-             doubts[j] <= params.max_raised_share &&
-             std::abs(other.middle_height() - it.middle_height()) < params.same_level;
-    });
+    return std::any_of(
+        scene.polygons.begin(), scene.polygons.end(), [&](const LevelPolygon& other) {
+          const auto j = static_cast<std::size_t>(&other - scene.polygons.data());
+          return other.attitude == attitude && other.area >= params.min_level_area &&
+                 doubts[j] <= params.max_raised_share &&
+                 std::abs(other.middle_height() - it.middle_height()) < params.same_level;
+        });
   };
   for (std::size_t i = 0; i < labels.size(); ++i) {
     if (scene.polygons[i].attitude != attitude) continue;
@@ -72,10 +73,14 @@ void label_levels(const LabelScene& scene, Attitude attitude, Label label,
 
 const char* name(Label label) {
   switch (label) {
-    case Label::floor: return "floor";
-    case Label::ceiling: return "ceiling";
-    case Label::wall: return "wall";
-    case Label::unknown: break;
+    case Label::floor:
+      return "floor";
+    case Label::ceiling:
+      return "ceiling";
+    case Label::wall:
+      return "wall";
+    case Label::unknown:
+      break;
   }
   return "unknown";
 }

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "meshing/polygon_map.hpp"
 #include "slam/core/pose.hpp"
@@ -20,22 +21,22 @@ struct PolygonLabel {
 };
 
 struct Labels {
-  std::vector<PolygonLabel> polygons;  ///< in the order of the map
+  std::vector<PolygonLabel> polygons;             ///< in the order of the map
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< unit, against gravity, as the scene shows it
   double up_confidence = 0;                       ///< in [0, 1]
 };
 
 struct LabelParams {
-  double max_tilt = radians(15);      ///< of a floor from level, of a wall from upright
-  double same_level = 0.12;           ///< m, surfaces closer in height are one level
-  double min_headroom = 1.8;          ///< m, between a floor and what is above it
-  double max_raise = 2.6;             ///< m, what is less above a floor beside it may be furniture
-  double neighbourhood = 1.0;         ///< m, how far a floor beside furniture is looked for
-  double max_raised_share = 0.6;      ///< of a surface with a lower one beside it, to be a floor
-  double min_level_area = 0.25;       ///< m^2, smaller surfaces are floor only at the level of one
-  double ceiling_gap = 0.25;          ///< m, a wall ends less than this below its ceiling
-  double min_wall_height = 1.5;       ///< m, where no ceiling tells what is a wall
-  double min_wall_area = 1.5;         ///< m^2, the same
+  double max_tilt = radians(15);  ///< of a floor from level, of a wall from upright
+  double same_level = 0.12;       ///< m, surfaces closer in height are one level
+  double min_headroom = 1.8;      ///< m, between a floor and what is above it
+  double max_raise = 2.6;         ///< m, what is less above a floor beside it may be furniture
+  double neighbourhood = 1.0;     ///< m, how far a floor beside furniture is looked for
+  double max_raised_share = 0.6;  ///< of a surface with a lower one beside it, to be a floor
+  double min_level_area = 0.25;   ///< m^2, smaller surfaces are floor only at the level of one
+  double ceiling_gap = 0.25;      ///< m, a wall ends less than this below its ceiling
+  double min_wall_height = 1.5;   ///< m, where no ceiling tells what is a wall
+  double min_wall_area = 1.5;     ///< m^2, the same
 };
 
 /// Floors, ceilings and walls by their normals and their places in the scene (docs/labeling.md):

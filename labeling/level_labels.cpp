@@ -7,9 +7,9 @@
 namespace planum {
 namespace {
 
-constexpr int samples = 200;          // of a polygon
-constexpr int directions = 12;        // around a sample
-constexpr int steps = 4;              // to the end of the neighbourhood
+constexpr int samples = 200;            // of a polygon
+constexpr int directions = 12;          // around a sample
+constexpr int steps = 4;                // to the end of the neighbourhood
 constexpr double above_surface = 0.05;  // m, where the way to the neighbourhood is looked at
 
 /// What is around a surface that may be a floor.

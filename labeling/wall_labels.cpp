@@ -9,12 +9,12 @@
 namespace planum {
 namespace {
 
-constexpr double min_width = 0.1;         // m, of a wall that ends at a ceiling
+constexpr double min_width = 0.1;               // m, of a wall that ends at a ceiling
 constexpr double in_front[] = {0.1, 0.4, 0.8};  // m, where the ceiling over a wall is looked for
 constexpr double behind_gap = 0.05, behind_reach = 1.2;  // m, what stands before a wall
-constexpr double same_plane = 0.1;        // m
+constexpr double same_plane = 0.1;                       // m
 const double same_direction = std::cos(radians(8));
-constexpr double ceiling_search = 3;      // m
+constexpr double ceiling_search = 3;  // m
 
 class WallSearch {
  public:
@@ -89,10 +89,8 @@ class WallSearch {
     double nearest = ceiling_search;
     for (std::size_t c = 0; c < labels_.size(); ++c) {
       if (labels_[c].label != Label::ceiling || polygon(c).high.z() <= height) continue;
-      const Eigen::Vector2d gap = (polygon(c).low - wall.high)
-                                      .cwiseMax(wall.low - polygon(c).high)
-                                      .cwiseMax(0)
-                                      .head<2>();
+      const Eigen::Vector2d gap =
+          (polygon(c).low - wall.high).cwiseMax(wall.low - polygon(c).high).cwiseMax(0).head<2>();
       if (gap.norm() >= nearest) continue;
       nearest = gap.norm();
       best = polygon(c).middle_height();
@@ -129,8 +127,9 @@ class WallSearch {
     for (std::size_t j = 0; j < scene_.polygons.size(); ++j) {
       if (polygon(j).attitude != Attitude::facing_up || labels_[j].label == Label::floor) continue;
       if (std::abs(polygon(j).middle_height() - polygon(i).high.z()) > params_.same_level) continue;
-      const auto shared = std::count_if(map_.polygons[j].outer.begin(), map_.polygons[j].outer.end(),
-                                        [&](std::uint32_t v) { return top.contains(v); });
+      const auto shared =
+          std::count_if(map_.polygons[j].outer.begin(), map_.polygons[j].outer.end(),
+                        [&](std::uint32_t v) { return top.contains(v); });
       if (shared >= 2) return true;
     }
     return false;

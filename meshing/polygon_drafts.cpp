@@ -100,15 +100,18 @@ std::vector<PolygonDraft> polygon_drafts(const BorderNetwork& network, const Dra
   std::vector<PolygonDraft> drafts;
   for (Part& part : parts_of_regions(network, params)) {
     const std::size_t first = drafts.size();
-    double largest = 0;
-    for (const Loop& outer : part.outer) largest = std::max(largest, outer.area);
-    for (const Loop& outer : part.outer)
-      drafts.push_back({part.region,
-                        {outer.ring},
-                        part.chains,
-                        outer.area < params.min_scrap && outer.area < largest});
-    for (const Loop& hole : part.holes)
-      drafts[first + outer_of(hole.ring, part, network)].rings.push_back(hole.ring);
+    std::vector<double> area;
+    for (Loop& outer : part.outer) {
+      area.push_back(outer.area);
+      drafts.push_back({part.region, {outer.ring}, part.chains, false});
+    }
+    for (const Loop& hole : part.holes) {
+      const std::size_t outer = outer_of(hole.ring, part, network);
+      area[outer] += hole.area;
+      drafts[first + outer].rings.push_back(hole.ring);
+    }
+    for (std::size_t i = 0; i < area.size(); ++i)
+      drafts[first + i].is_scrap = area[i] < params.min_area;
   }
   return drafts;
 }

@@ -28,12 +28,12 @@ struct PolygonDraft {
   std::uint32_t region = 0;
   std::vector<Ring> rings;            ///< the outer one first
   std::vector<std::uint32_t> chains;  ///< what its rings are made of
-  bool is_scrap = false;              ///< too small to be a polygon, hangs on one by a vertex
+  bool is_scrap = false;              ///< too small to be a polygon
 };
 
 struct DraftParams {
-  double min_hole = 0.02;    ///< m^2, smaller holes that only the rim of the mesh bounds are closed
-  double min_scrap = 0.002;  ///< m^2, of a part that hangs on the rest of its region by a vertex
+  double min_hole = 0.02;  ///< m^2, smaller holes that only the rim of the mesh bounds are closed
+  double min_area = 0.02;  ///< m^2, of a polygon
 };
 
 /// Rings of points in a plane, flat.

@@ -98,7 +98,7 @@ class MapBuilder {
           rings.back().push_back(at->second);
         }
       }
-      if (signed_area(pieces.front()) > min_piece) add(rings, plane);
+      add(rings, plane);
     }
   }
 
@@ -109,8 +109,6 @@ class MapBuilder {
   }
 
  private:
-  static constexpr double min_piece = 1e-4;  ///< m^2
-
   std::uint32_t named(std::uint32_t point) {
     if (name_[point] == HalfEdges::none) {
       name_[point] = static_cast<std::uint32_t>(map_.vertices.size());
@@ -191,8 +189,7 @@ PolygonParams polygon_params(double cell) {
 PolygonMap polygonize(const TriangleMesh& mesh, const Regions& regions,
                       const PolygonParams& params) {
   check(mesh, regions, params);
-  const DraftParams draft_params{.min_hole = params.min_hole,
-                                 .min_scrap = params.min_component / 10};
+  const DraftParams draft_params{.min_hole = params.min_hole, .min_area = params.min_component};
   TriangleMesh whole = mesh;
   HalfEdges edges = half_edges(mesh);
   BorderNetwork network = border_network(whole, regions, edges, params);
