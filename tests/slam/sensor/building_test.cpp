@@ -1,16 +1,22 @@
 #include "slam/sensor/building.hpp"
 
+#include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "slam/core/cloud.hpp"
+#include "slam/core/kd_tree.hpp"
 #include "slam/core/pose.hpp"
 #include "slam/sensor/demo_building.hpp"
 #include "slam/sensor/furniture.hpp"
 #include "slam/sensor/random_building.hpp"
 #include "slam/sensor/ray_caster.hpp"
+#include "slam/sensor/simulator.hpp"
+#include "slam/sensor/tilted_laser.hpp"
 #include "tests/slam/sensor/sensor_test_support.hpp"
 
 namespace planum {
@@ -223,6 +229,34 @@ TEST(DemoBuilding, PathEntersEveryRoom) {
       return box.contains(plan_from_building * pose.translation().head<2>().eval());
     });
     EXPECT_TRUE(entered) << room.name;
+  }
+}
+
+/// Share of a scan's points within 10 cm of the other's, one point a 5 cm voxel.
+double overlap(const std::vector<Eigen::Vector3f>& scan,
+               const std::vector<Eigen::Vector3f>& other) {
+  const KdTree tree(other);
+  std::map<std::array<int, 3>, bool> voxels;
+  for (const Eigen::Vector3f& p : scan) {
+    const Eigen::Vector3i v = (20 * p).array().floor().matrix().cast<int>();
+    if (const std::array<int, 3> key{v.x(), v.y(), v.z()}; !voxels.contains(key))
+      voxels[key] = tree.nearest(p, 0.1f).has_value();
+  }
+  const auto near = std::count_if(voxels.begin(), voxels.end(), [](auto& v) { return v.second; });
+  return static_cast<double>(near) / static_cast<double>(voxels.size());
+}
+
+TEST(DemoBuilding, ConsecutiveScansOverlap) {
+  const Building building = demo_building();
+  const std::vector<Pose> poses = demo_poses();
+  const auto scans = simulate_scans(building.mesh.mesh, poses, {.beams = 181, .slices = 126});
+  std::vector<Eigen::Vector3f> last;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const auto points = transformed(points_from_slices(scans[i].scan).cloud, poses[i]).points;
+    if (i > 0) {
+      EXPECT_GT(overlap(points, last), 0.35) << "scan " << i;
+    }
+    last = points;
   }
 }
 
