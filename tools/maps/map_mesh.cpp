@@ -34,7 +34,8 @@ std::string material_text(const std::string& material, const Colour& colour) {
 
 void write_map_ply(const std::filesystem::path& path, const TriangulatedMap& mesh,
                    const Labels& labels) {
-  MeshAttributes attributes{.triangle_properties = {{"label", {}}, {"polygon", {}}}};
+  MeshAttributes attributes;
+  attributes.triangle_properties = {{"label", {}}, {"polygon", {}}};
   for (std::size_t i = 0; i < mesh.polygon.size(); ++i) {
     const PolygonLabel* label = label_of(mesh, labels, i);
     attributes.triangle_colours.push_back(label ? colour_of(label->label) : colour_of_rest());
@@ -48,7 +49,8 @@ void write_map_ply(const std::filesystem::path& path, const TriangulatedMap& mes
 void write_map_obj(const std::filesystem::path& path, const TriangulatedMap& mesh,
                    const Labels& labels) {
   std::string materials = "# colours of the labels of planum, Okabe & Ito's palette\n";
-  LabelledMesh labelled{.mesh = mesh.mesh};
+  LabelledMesh labelled;
+  labelled.mesh = mesh.mesh;
   for (const Label label : all_labels) {
     labelled.names.emplace_back(name(label));
     materials += material_text(name(label), colour_of(label));
