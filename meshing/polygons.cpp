@@ -79,27 +79,36 @@ class MapBuilder {
   }
 
   /// A draft that crosses itself in spite of all: what it covers. Crossings become new vertices.
-  void add_made_valid(const PolygonDraft& draft, const Plane& plane) {
+  /// Returns the pieces smaller than min_area.
+  std::vector<std::vector<Ring2d>> add_made_valid(const PolygonDraft& draft, const Plane& plane,
+                                                  double min_area) {
     const PlaneFrame frame(plane);
     std::map<std::pair<double, double>, std::uint32_t> corners;
     for (const Ring& ring : draft.rings)
       for (const std::uint32_t v : ring) {
         const Eigen::Vector2d p = frame.flat(points_[v]);
-        corners.emplace(std::pair(p.x(), p.y()), named(v));
+        corners.emplace(std::pair(p.x(), p.y()), v);
       }
-    for (std::vector<Ring2d>& pieces : made_valid(flat_rings(draft.rings, plane, points_))) {
+    std::vector<std::vector<Ring2d>> scraps;
+    for (std::vector<Ring2d>& piece : made_valid(flat_rings(draft.rings, plane, points_))) {
+      double area = 0;
+      for (const Ring2d& ring : piece) area += signed_area(ring);
+      if (area < min_area) {
+        scraps.push_back(std::move(piece));
+        continue;
+      }
       std::vector<Ring> rings;
-      for (Ring2d& piece : pieces) {
-        if ((signed_area(piece) > 0) != rings.empty()) std::reverse(piece.begin(), piece.end());
+      for (const Ring2d& ring : piece) {
         rings.emplace_back();
-        for (const Eigen::Vector2d& p : piece) {
-          const auto [at, is_new] = corners.try_emplace({p.x(), p.y()}, map_.vertices.size());
-          if (is_new) map_.vertices.push_back(frame.raised(p));
-          rings.back().push_back(at->second);
+        for (const Eigen::Vector2d& p : ring) {
+          const auto known = corners.find({p.x(), p.y()});
+          rings.back().push_back(known != corners.end() ? named(known->second)
+                                                        : added(frame.raised(p)));
         }
       }
       add(rings, plane);
     }
+    return scraps;
   }
 
   PolygonMap built() {
@@ -109,11 +118,13 @@ class MapBuilder {
   }
 
  private:
+  std::uint32_t added(const Eigen::Vector3d& vertex) {
+    map_.vertices.push_back(vertex);
+    return static_cast<std::uint32_t>(map_.vertices.size() - 1);
+  }
+
   std::uint32_t named(std::uint32_t point) {
-    if (name_[point] == HalfEdges::none) {
-      name_[point] = static_cast<std::uint32_t>(map_.vertices.size());
-      map_.vertices.push_back(points_[point]);
-    }
+    if (name_[point] == HalfEdges::none) name_[point] = added(points_[point]);
     return name_[point];
   }
 
@@ -129,14 +140,29 @@ class MapBuilder {
   PolygonMap map_;
 };
 
-/// Scraps go to the rest.
-void add_triangles(RestSurface& rest, const PolygonDraft& scrap, const Plane& plane) {
-  const auto triangles = constrained_delaunay(flat_rings(scrap.rings, plane, rest.points));
+/// What is too small to be a polygon goes to the rest; `corners` are the points of all rings.
+void add_scrap(RestSurface& rest, std::span<const Ring2d> rings, const Ring& corners) {
+  const auto triangles = constrained_delaunay(rings);
   if (!triangles) return;
-  Ring corners;
-  for (const Ring& ring : scrap.rings) corners.insert(corners.end(), ring.begin(), ring.end());
   for (const auto& t : *triangles)
     rest.triangles.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
+}
+
+void add_scrap(RestSurface& rest, const PolygonDraft& draft, const Plane& plane) {
+  Ring corners;
+  for (const Ring& ring : draft.rings) corners.insert(corners.end(), ring.begin(), ring.end());
+  add_scrap(rest, flat_rings(draft.rings, plane, rest.points), corners);
+}
+
+void add_scrap(RestSurface& rest, std::span<const Ring2d> rings, const Plane& plane) {
+  const PlaneFrame frame(plane);
+  Ring corners;
+  for (const Ring2d& ring : rings)
+    for (const Eigen::Vector2d& p : ring) {
+      corners.push_back(static_cast<std::uint32_t>(rest.points.size()));
+      rest.points.push_back(frame.raised(p));
+    }
+  add_scrap(rest, rings, corners);
 }
 
 TriangleMesh mesh_of(const RestSurface& rest) {
@@ -161,11 +187,12 @@ PolygonMap finished(BorderNetwork& network, RestSurface& rest, const DraftParams
   for (const PolygonDraft& draft : polygon_drafts(network, params)) {
     const Plane& plane = network.regions[draft.region].plane;
     if (draft.is_scrap)
-      add_triangles(rest, draft, plane);
+      add_scrap(rest, draft, plane);
     else if (is_valid_polygon(flat_rings(draft.rings, plane, network.corners.points)))
       builder.add(draft, plane);
     else
-      builder.add_made_valid(draft, plane);
+      for (const auto& scrap : builder.add_made_valid(draft, plane, params.min_area))
+        add_scrap(rest, scrap, plane);
   }
   PolygonMap map = builder.built();
   map.rest = mesh_of(rest);
