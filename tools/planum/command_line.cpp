@@ -72,12 +72,14 @@ const CLI::App& active_command(const CLI::App& app) {
 }
 
 void add_commands(CLI::App& app) {
+  add_demo_command(app);
   add_init_command(app);
   add_check_command(app);
   add_run_command(app);
   add_status_command(app);
   add_config_command(app);
   add_view_command(app);
+  add_polygonize_command(app);
   add_simulate_command(app);
   add_convert_command(app);
   for (CLI::App* command : app.get_subcommands({})) {

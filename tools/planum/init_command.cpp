@@ -22,7 +22,8 @@ struct InitArguments {
 /// How a project file names a path: relative to itself where both are near each other.
 std::string path_from(const std::filesystem::path& project_file,
                       const std::filesystem::path& path) {
-  const auto from = std::filesystem::weakly_canonical(project_file).parent_path();
+  const auto from =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(project_file)).parent_path();
   const auto to = std::filesystem::weakly_canonical(path);
   const std::string relative = to.lexically_relative(from).string();
   return relative.starts_with("../../../") ? to.string() : relative;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
 #include "slam/io/obj.hpp"
 #include "slam/io/pose_list.hpp"
@@ -36,8 +37,14 @@ void simulate_command(SimulateArguments arguments) {
   Console console(arguments.work.quiet);
   const LabelledMesh model = read_obj(arguments.model);
   const std::vector<Pose> poses = read_pose_list(arguments.poses);
-  write_simulated_scans(arguments.output, model.mesh, poses, simulator, arguments.drift,
+  if (std::filesystem::exists(arguments.output / "scan000.slices")) {
+    throw Error(fmt::format("there are scans in {} already; choose another directory",
+                            arguments.output.string()),
+                ErrorKind::usage);
+  }
+  write_simulated_scans(arguments.output, model.mesh, poses, simulator,
                         console.start_bar("simulate", "scans"));
+  write_simulated_trajectories(arguments.output, poses, arguments.drift);
   console.end_bar();
   fmt::print("{} scans, odometry.tum and truth.tum in {}\n", poses.size(),
              arguments.output.string());

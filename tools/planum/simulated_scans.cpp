@@ -21,15 +21,21 @@ Trajectory from_first(std::span<const Pose> poses) {
 }  // namespace
 
 void write_simulated_scans(const std::filesystem::path& directory, const TriangleMesh& model,
-                           std::span<const Pose> model_from_scan, const SimulatorParams& simulator,
-                           const DriftParams& drift, const Progress& progress) {
+                           std::span<const Pose> model_from_scan, const SimulatorParams& params,
+                           const Progress& progress) {
   std::filesystem::create_directories(directory);
   const RayCaster caster(model);
   for (std::size_t i = 0; i < model_from_scan.size(); ++i) {
-    const auto scan = simulate_scan(caster, model_from_scan[i], i, simulator).scan;
-    write_slices(directory / fmt::format("scan{:03}.slices", i), scan);
+    const auto file = directory / fmt::format("scan{:03}.slices", i);
+    if (!std::filesystem::exists(file)) {
+      write_slices(file, simulate_scan(caster, model_from_scan[i], i, params).scan);
+    }
     progress.report(i + 1, model_from_scan.size());
   }
+}
+
+void write_simulated_trajectories(const std::filesystem::path& directory,
+                                  std::span<const Pose> model_from_scan, const DriftParams& drift) {
   write_tum(directory / "truth.tum", from_first(model_from_scan));
   write_tum(directory / "odometry.tum", from_first(drifted(model_from_scan, drift)));
 }

@@ -9,10 +9,15 @@
 
 namespace planum {
 
-/// Scans a model from the poses and writes scanNNN.slices, odometry.tum (drifting) and truth.tum to
-/// a directory, which is made if need be. Both trajectories are relative to the first pose.
+/// Scans a model from the poses and writes scanNNN.slices to a directory, which is made if need be.
+/// Scans that are there already stay as they are.
 void write_simulated_scans(const std::filesystem::path& directory, const TriangleMesh& model,
-                           std::span<const Pose> model_from_scan, const SimulatorParams& simulator,
-                           const DriftParams& drift, const Progress& progress = {});
+                           std::span<const Pose> model_from_scan, const SimulatorParams& params,
+                           const Progress& progress = {});
+
+/// Writes truth.tum, the poses relative to the first one, and odometry.tum, the same as odometry
+/// with drift has it.
+void write_simulated_trajectories(const std::filesystem::path& directory,
+                                  std::span<const Pose> model_from_scan, const DriftParams& drift);
 
 }  // namespace planum

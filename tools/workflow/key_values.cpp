@@ -203,6 +203,7 @@ std::string suggestion(const std::string& section, const std::string& name) {
     return fmt::format("there is a key of that name in [{}]", elsewhere->section);
   }
   if (const auto near = nearest_name(name, here)) return fmt::format("did you mean '{}'?", *near);
+  if (here.empty()) return fmt::format("[{}] has no keys", section);
   std::string all;
   for (const std::string& known : here) all += (all.empty() ? "" : ", ") + known;
   return fmt::format("known keys are {}", all);

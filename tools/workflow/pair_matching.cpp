@@ -12,49 +12,52 @@ constexpr int matching_version = 1;
 
 }  // namespace
 
-PairMatching::PairMatching(const Imported& imported, const Settings& settings, UnitCache& units)
-    : imported_(imported),
-      units_(units),
-      matching_(settings.matching),
-      icp_(settings.icp),
-      scans_(imported.scans.size()),
-      ready_(imported.scans.size()) {
-  icp_.pairing =
-      settings.pairing == "point-to-point" ? Pairing::point_to_point : Pairing::point_to_plane;
-  parameters_ =
-      Hasher().value(matching_version).text(archived(matching_)).text(archived(icp_)).result();
+PairMatching::PairMatching(Results& results, const Settings& settings, UnitCache& units)
+    : results_(results), units_(units), icp_(settings.icp) {
+  icp_.pairing = pairing_of(settings);
+  parameters_ = Hasher()
+                    .value(matching_version)
+                    .text(archived(settings.matching))
+                    .text(archived(icp_))
+                    .result();
 }
 
-const MatchingScan& PairMatching::scan(std::size_t index) {
-  std::call_once(ready_[index], [&] {
-    scans_[index] =
-        std::make_unique<MatchingScan>(matching_scan(imported_.scans[index].cloud, matching_));
-  });
-  return *scans_[index];
-}
-
-Alignment PairMatching::align(std::size_t target, std::size_t source, const Pose& guess) {
-  const std::string unit = imported_.scans[target].id + "-" + imported_.scans[source].id;
+Alignment PairMatching::align(std::size_t target, std::size_t source, const Pose& guess,
+                              double first_gate) {
+  const Imported& imported = results_.imported.get();
   const Digest key = Hasher()
                          .digest(parameters_)
-                         .digest(imported_.digests[target])
-                         .digest(imported_.digests[source])
+                         .digest(imported.digests[target])
+                         .digest(imported.digests[source])
                          .bytes(guess.data(), sizeof(double) * 16)
+                         .value(first_gate)
                          .result();
+  const std::string pair = imported.scans[target].id + "-" + imported.scans[source].id;
+  // A pair may be matched again from another guess: the end of the name tells them apart.
+  const std::string unit = pair + "-" + to_string(key).substr(0, 8);
   if (const auto bytes = units_.find(unit, key)) return unarchived<Alignment>(*bytes);
+  std::call_once(ready_, [&] { scans_ = &results_.matching_scans.get(); });
+  IcpParams params = icp_;
+  params.first_gate = first_gate;
   try {
-    const Alignment alignment = planum::align(scan(source), scan(target), guess, icp_);
+    const Alignment alignment = planum::align((*scans_)[source], (*scans_)[target], guess, params);
     units_.store(unit, key, archived(alignment));
     return alignment;
   } catch (Error& error) {
-    error.add_context(unit);
+    error.add_context(pair);
     throw;
   }
 }
 
 PairMatcher PairMatching::matcher() {
   return [this](std::size_t target, std::size_t source, const Pose& guess) {
-    return align(target, source, guess);
+    return align(target, source, guess, icp_.first_gate);
+  };
+}
+
+LoopMatcher PairMatching::loop_matcher() {
+  return [this](std::size_t target, std::size_t source, const Pose& guess, double first_gate) {
+    return align(target, source, guess, first_gate);
   };
 }
 

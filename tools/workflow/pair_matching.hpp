@@ -1,9 +1,9 @@
 #pragma once
 
-#include <memory>
 #include <mutex>
 #include <vector>
 
+#include "slam/graph/loops.hpp"
 #include "slam/registration/matching_scan.hpp"
 #include "slam/registration/sequence.hpp"
 #include "tools/workflow/results.hpp"
@@ -13,28 +13,27 @@
 namespace planum {
 
 /// Matches pairs of imported scans by ICP and remembers each result as a unit, named after the two
-/// scans. Scans are made ready when first needed: a pair that is remembered costs nothing. Any
-/// number of threads may match.
+/// scans. Scans are made ready when the first pair is not remembered. Any number of threads may
+/// match.
 class PairMatching {
  public:
-  /// The scans and the units must outlive it.
-  PairMatching(const Imported& imported, const Settings& settings, UnitCache& units);
+  /// The results and the units must outlive it.
+  PairMatching(Results& results, const Settings& settings, UnitCache& units);
 
-  Alignment align(std::size_t target, std::size_t source, const Pose& guess);
+  /// `first_gate` (m) in place of that of the settings.
+  Alignment align(std::size_t target, std::size_t source, const Pose& guess, double first_gate);
 
   /// For functions that match; it must outlive their calls.
   PairMatcher matcher();
+  LoopMatcher loop_matcher();
 
  private:
-  const MatchingScan& scan(std::size_t index);
-
-  const Imported& imported_;
+  Results& results_;
   UnitCache& units_;
-  MatchingScanParams matching_;
   IcpParams icp_;
   Digest parameters_;  ///< of all that a match depends on but the scans and the guess
-  std::vector<std::unique_ptr<MatchingScan>> scans_;
-  std::vector<std::once_flag> ready_;
+  std::once_flag ready_;
+  const std::vector<MatchingScan>* scans_ = nullptr;
 };
 
 }  // namespace planum

@@ -5,6 +5,7 @@
 #include "slam/core/error.hpp"
 #include "slam/io/atomic_file.hpp"
 #include "slam/io/input_file.hpp"
+#include "slam/io/ply.hpp"
 #include "tools/workflow/cache_layout.hpp"
 #include "tools/workflow/stored_types.hpp"
 #include "tools/workflow/unit_cache.hpp"
@@ -39,18 +40,38 @@ Imported load_imported(const CacheLayout& layout) {
   UnitCache units(layout.units("import"));
   for (std::size_t i = 0; i < imported.scans.size(); ++i) {
     Scan& scan = imported.scans[i];
-    const auto bytes = units.find(scan.id, imported.keys[i]);
-    if (!bytes) throw Error("the points of " + scan.id + " are missing");
-    scan.cloud = unarchived<ImportedUnit>(*bytes).cloud;
+    const auto bytes = units.read(scan.id);
+    if (bytes) scan.cloud = unarchived<ImportedUnit>(*bytes).cloud;
+    if (digest_of(scan.cloud) != imported.digests[i]) {
+      throw Error("the points of " + scan.id + " are not those of the last import");
+    }
   }
   return imported;
 }
 
+std::vector<MatchingScan> made_ready(const Imported& imported, const MatchingScanParams& params) {
+  std::vector<MatchingScan> scans;
+  scans.reserve(imported.scans.size());
+  for (const Scan& scan : imported.scans) scans.push_back(matching_scan(scan.cloud, params));
+  return scans;
+}
+
 }  // namespace
 
-Results::Results(const CacheLayout& layout)
-    : imported(loader("import", [=] { return load_imported(layout); })),
-      registered(archive_loader<SequenceMatch>(layout, "register")) {}
+Results::Results(const CacheLayout& layout, const MatchingScanParams& matching)
+    : imported(loader("import", [layout] { return load_imported(layout); })),
+      registered(archive_loader<SequenceMatch>(layout, "register")),
+      relaxed(archive_loader<Relaxed>(layout, "relax")),
+      world(archive_loader<World>(layout, "cloud")),
+      cloud(loader("cloud", [layout] { return read_ply_cloud(layout.output / "cloud.ply"); })),
+      mesh(loader("mesh", [layout] { return read_ply_mesh(layout.output / "mesh.ply"); })),
+      polygons(archive_loader<PolygonMap>(layout, "polygons")),
+      labelled(archive_loader<Labelled>(layout, "labels")),
+      matching_scans([this, matching] { return made_ready(imported.get(), matching); }) {}
+
+Digest digest_of(const Cloud& cloud) {
+  return Hasher().list(cloud.points).list(cloud.intensity).result();
+}
 
 template <class T>
 void write_result(const std::filesystem::path& file, const T& result) {
@@ -59,5 +80,15 @@ void write_result(const std::filesystem::path& file, const T& result) {
 
 template void write_result(const std::filesystem::path&, const Imported&);
 template void write_result(const std::filesystem::path&, const SequenceMatch&);
+template void write_result(const std::filesystem::path&, const Relaxed&);
+template void write_result(const std::filesystem::path&, const World&);
+template void write_result(const std::filesystem::path&, const PolygonMap&);
+template void write_result(const std::filesystem::path&, const Labelled&);
+
+std::vector<Eigen::Vector3d> scan_origins(const World& world) {
+  std::vector<Eigen::Vector3d> origins;
+  for (const Pose& pose : world.poses) origins.push_back(pose.translation());
+  return origins;
+}
 
 }  // namespace planum

@@ -6,7 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "labeling/labels.hpp"
+#include "labeling/rooms.hpp"
+#include "meshing/polygon_map.hpp"
 #include "slam/core/cloud.hpp"
+#include "slam/graph/pose_graph.hpp"
 #include "slam/registration/sequence.hpp"
 #include "slam/sensor/range_limits.hpp"
 #include "tools/workflow/cache_layout.hpp"
@@ -35,10 +39,11 @@ class Held {
 struct Imported {
   std::vector<Scan> scans;
   std::vector<ImportCounts> counts;  ///< for each scan
-  std::vector<Digest> keys;          ///< of the units that hold the clouds
   std::vector<Digest> digests;       ///< of the clouds
   std::string pose_source;           ///< "pose files", the name of a file, or "none"
 };
+
+Digest digest_of(const Cloud& cloud);
 
 /// One imported scan as its unit keeps it.
 struct ImportedUnit {
@@ -46,16 +51,53 @@ struct ImportedUnit {
   ImportCounts counts;
 };
 
+/// What `relax` makes: all edges, and the poses that suit them best.
+struct Relaxed {
+  PoseGraph graph;
+  double residual_before = 0, residual_after = 0;  ///< m, rms over all links; 0: not relaxed
+  int iterations = 0;
+  bool converged = true;
+  std::vector<std::vector<std::size_t>>
+      components;  ///< scans that hang together, the largest first
+};
+
+/// Where the scans are in the world of all results; part of what `cloud` makes.
+struct World {
+  std::vector<Pose> odometry;                ///< world_from_scan, as the poses came
+  std::vector<Pose> poses;                   ///< world_from_scan, as they are now
+  std::vector<std::uint8_t> is_mapped;       ///< for each scan; others hang on nothing
+  Pose world_from_input = Pose::Identity();  ///< how the world was turned to be level
+  double up_confidence = 0;                  ///< in [0, 1]; 0: not levelled
+};
+
+/// What `labels` makes.
+struct Labelled {
+  Labels labels;
+  RoomMap rooms;
+};
+
 /// The results of all stages of one run.
 struct Results {
-  explicit Results(const CacheLayout& layout);
+  Results(const CacheLayout& layout, const MatchingScanParams& matching);
 
   Held<Imported> imported;
   Held<SequenceMatch> registered;
+  Held<Relaxed> relaxed;
+  Held<World> world;
+  Held<Cloud> cloud;
+  Held<TriangleMesh> mesh;
+  Held<PolygonMap> polygons;
+  Held<Labelled> labelled;
+
+  /// The imported scans made ready for matching; never stored.
+  Held<std::vector<MatchingScan>> matching_scans;
 };
 
 /// Writes a result as Results will read it.
 template <class T>
 void write_result(const std::filesystem::path& file, const T& result);
+
+/// Where the scans of a world were taken, as functions of clouds want it.
+std::vector<Eigen::Vector3d> scan_origins(const World& world);
 
 }  // namespace planum

@@ -150,8 +150,14 @@ RunSummary run(const Project& project, const RunOptions& options, const RunListe
   make_directories(layout.root());
   const RunLock lock(layout.lock());
   remove_leftovers(layout);
-  Session session{project,         options, listener, layout, FileDigests(layout.digests()),
-                  Results(layout), {},      {}};
+  Session session{project,
+                  options,
+                  listener,
+                  layout,
+                  FileDigests(layout.digests()),
+                  Results(layout, project.settings.matching),
+                  {},
+                  {}};
   for (std::size_t i = 0; i <= until; ++i) {
     const Stage& stage = stages()[i];
     try {

@@ -3,8 +3,12 @@
 #include <optional>
 #include <string>
 
+#include "labeling/labels.hpp"
+#include "labeling/rooms.hpp"
 #include "meshing/normals.hpp"
 #include "meshing/surface.hpp"
+#include "slam/graph/loops.hpp"
+#include "slam/graph/relax_lu_milios.hpp"
 #include "slam/registration/icp.hpp"
 #include "slam/registration/matching_scan.hpp"
 #include "slam/registration/sequence.hpp"
@@ -24,6 +28,14 @@ struct SensorSettings {
   double tilt_offset = 0;               ///< rad, added to every tilt
 };
 
+/// [polygons]: what is not set follows the voxels of the mesh.
+struct PolygonSettings {
+  std::optional<double> max_angle;     ///< rad
+  std::optional<double> max_distance;  ///< m
+  std::optional<double> min_area;      ///< m^2
+  std::optional<double> max_error;     ///< m
+};
+
 /// Every value of a project file, in the units of the program (m, rad, s). Where a module has a
 /// parameter struct, that is what is kept here: its defaults are the defaults of the file.
 struct Settings {
@@ -39,12 +51,26 @@ struct Settings {
   IcpParams icp;
   SequenceParams sequence;
 
-  NormalParams normals;
+  bool close_loops = true;
+  LoopParams loops;
+
+  std::string relaxation_method = "lu-milios";
+  LuMiliosParams relaxation;
+
   bool level = true;
+  NormalParams normals;
   SurfaceParams surface;
+  PolygonSettings polygons;
+  LabelParams labels;
+  RoomParams rooms;
 
   std::string truth;  ///< path, empty: none
   std::string output_directory = "out";
 };
+
+/// The pairing that a project file names.
+inline Pairing pairing_of(const Settings& settings) {
+  return settings.pairing == "point-to-point" ? Pairing::point_to_point : Pairing::point_to_plane;
+}
 
 }  // namespace planum

@@ -9,7 +9,9 @@
 namespace planum {
 
 const std::vector<Stage>& stages() {
-  static const std::vector<Stage> all = {import_stage(), register_stage()};
+  static const std::vector<Stage> all = {import_stage(), register_stage(), relax_stage(),
+                                         cloud_stage(),  mesh_stage(),     polygons_stage(),
+                                         labels_stage(), maps_stage(),     report_stage()};
   return all;
 }
 

@@ -60,7 +60,77 @@ void fields(Archive& archive, Scan& scan) {
 
 template <class Archive>
 void fields(Archive& archive, Imported& imported) {
-  archive(imported.scans, imported.counts, imported.keys, imported.digests, imported.pose_source);
+  archive(imported.scans, imported.counts, imported.digests, imported.pose_source);
+}
+
+template <class Archive>
+void fields(Archive& archive, Edge& edge) {
+  archive(edge.from, edge.to, edge.from_from_to, edge.information, edge.rms, edge.overlap,
+          edge.kind, edge.accepted, edge.matched, edge.reason);
+}
+
+template <class Archive>
+void fields(Archive& archive, PoseGraph& graph) {
+  archive(graph.poses, graph.edges);
+}
+
+template <class Archive>
+void fields(Archive& archive, Relaxed& relaxed) {
+  archive(relaxed.graph, relaxed.residual_before, relaxed.residual_after, relaxed.iterations,
+          relaxed.converged, relaxed.components);
+}
+
+template <class Archive>
+void fields(Archive& archive, World& world) {
+  archive(world.odometry, world.poses, world.is_mapped, world.world_from_input,
+          world.up_confidence);
+}
+
+template <class Archive>
+void fields(Archive& archive, TriangleMesh& mesh) {
+  archive(mesh.vertices, mesh.triangles);
+}
+
+template <class Archive>
+void fields(Archive& archive, MapPolygon& polygon) {
+  archive(polygon.plane.normal, polygon.plane.offset, polygon.outer, polygon.holes, polygon.area);
+}
+
+template <class Archive>
+void fields(Archive& archive, PolygonMap& map) {
+  archive(map.vertices, map.polygons, map.rest);
+}
+
+template <class Archive>
+void fields(Archive& archive, PolygonLabel& label) {
+  archive(label.label, label.confidence);
+}
+
+template <class Archive>
+void fields(Archive& archive, Labels& labels) {
+  archive(labels.polygons, labels.up, labels.up_confidence);
+}
+
+template <class Archive>
+void fields(Archive& archive, Room& room) {
+  archive(room.name, room.centre, room.along, room.area, room.width, room.depth, room.height,
+          room.outline, room.scans);
+}
+
+template <class Archive>
+void fields(Archive& archive, Opening& opening) {
+  archive(opening.kind, opening.position, opening.across, opening.width, opening.height,
+          opening.sill, opening.thickness, opening.rooms);
+}
+
+template <class Archive>
+void fields(Archive& archive, RoomMap& rooms) {
+  archive(rooms.rooms, rooms.openings, rooms.room_of_polygon);
+}
+
+template <class Archive>
+void fields(Archive& archive, Labelled& labelled) {
+  archive(labelled.labels, labelled.rooms);
 }
 
 }  // namespace planum

@@ -11,14 +11,27 @@ namespace {
 
 constexpr std::size_t header_size = 2 * sizeof(Digest);
 
+std::string key_bytes(const Digest& digest) {
+  return {reinterpret_cast<const char*>(digest.words.data()), sizeof digest.words};
+}
+
 /// Digests of what the unit depends on and of its bytes.
-std::string header(const Digest& key, std::string_view bytes) {
-  const Digest content = Hasher().bytes(bytes.data(), bytes.size()).result();
-  std::string text;
-  for (const Digest& digest : {key, content}) {
-    text.append(reinterpret_cast<const char*>(digest.words.data()), sizeof digest.words);
+std::string header(std::string_view key, std::string_view bytes) {
+  return std::string(key) + key_bytes(Hasher().bytes(bytes.data(), bytes.size()).result());
+}
+
+/// Header and bytes, if they belong together.
+std::optional<std::string> read_unit(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return std::nullopt;
+  std::string stored{std::istreambuf_iterator<char>(stream), {}};
+  if (stored.size() < header_size) return std::nullopt;
+  const std::string_view view = stored;
+  if (header(view.substr(0, sizeof(Digest)), view.substr(header_size)) !=
+      view.substr(0, header_size)) {
+    return std::nullopt;
   }
-  return text;
+  return stored;
 }
 
 }  // namespace
@@ -29,22 +42,26 @@ std::filesystem::path UnitCache::file(const std::string& unit) const {
   return directory_ / (unit + ".unit");
 }
 
+std::optional<std::string> UnitCache::read(const std::string& unit) const {
+  const auto stored = read_unit(file(unit));
+  if (!stored) return std::nullopt;
+  return stored->substr(header_size);
+}
+
 std::optional<std::string> UnitCache::find(const std::string& unit, const Digest& key) {
-  std::ifstream stream(file(unit), std::ios::binary);
-  if (!stream) return std::nullopt;
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (bytes.size() < header_size) return std::nullopt;
-  const std::string_view content = std::string_view(bytes).substr(header_size);
-  if (header(key, content) != std::string_view(bytes).substr(0, header_size)) return std::nullopt;
-  bytes.erase(0, header_size);
+  auto stored = read_unit(file(unit));
+  if (!stored || key_bytes(key) != std::string_view(*stored).substr(0, sizeof(Digest))) {
+    return std::nullopt;
+  }
+  stored->erase(0, header_size);
   const std::lock_guard guard(mutex_);
   used_.insert(file(unit).filename().string());
-  return bytes;
+  return stored;
 }
 
 void UnitCache::store(const std::string& unit, const Digest& key, std::string_view bytes) {
   std::filesystem::create_directories(directory_);
-  write_file_atomically(file(unit), header(key, bytes) + std::string(bytes));
+  write_file_atomically(file(unit), header(key_bytes(key), bytes) + std::string(bytes));
   const std::lock_guard guard(mutex_);
   used_.insert(file(unit).filename().string());
 }

@@ -21,6 +21,9 @@ class UnitCache {
   /// The stored bytes of a unit, if it was done before with the same key and is undamaged.
   std::optional<std::string> find(const std::string& unit, const Digest& key);
 
+  /// The same, made from whatever.
+  std::optional<std::string> read(const std::string& unit) const;
+
   void store(const std::string& unit, const Digest& key, std::string_view bytes);
 
   /// Where a unit is kept.

@@ -21,6 +21,8 @@ TEST(UnitCache, GivesBackOnlyWhatWasMadeFromTheSame) {
   EXPECT_FALSE(cache.find("scan000", other_key));
   EXPECT_FALSE(cache.find("scan001", key));
   EXPECT_EQ(UnitCache(directory / "units").find("scan000", key), "points");
+  EXPECT_EQ(UnitCache(directory / "units").read("scan000"), "points");
+  EXPECT_FALSE(UnitCache(directory / "units").read("scan001"));
 }
 
 TEST(UnitCache, TakesADamagedUnitForNone) {

@@ -16,10 +16,6 @@ std::vector<std::filesystem::path> input_files(const Project& project) {
   return files;
 }
 
-Digest digest_of(const Cloud& cloud) {
-  return Hasher().list(cloud.points).list(cloud.intensity).result();
-}
-
 /// A scan depends on its file and on the parameters of this stage, not on its pose.
 Digest unit_key(const ScanFile& file, ScanFormat format, const StageContext& context) {
   Hasher hasher;
@@ -30,8 +26,8 @@ Digest unit_key(const ScanFile& file, ScanFormat format, const StageContext& con
   return hasher.result();
 }
 
-ImportedUnit imported_unit(const ScanFile& file, ScanFormat format, const Digest& key,
-                           StageContext& context) {
+ImportedUnit imported_unit(const ScanFile& file, ScanFormat format, StageContext& context) {
+  const Digest key = unit_key(file, format, context);
   if (const auto bytes = context.units.find(file.id, key)) return unarchived<ImportedUnit>(*bytes);
   ImportedScan scan = read_scan(file, format, context.project.settings);
   ImportedUnit unit{std::move(scan.cloud), scan.counts};
@@ -57,11 +53,10 @@ void work(StageContext& context) {
   const ScanPoses poses = scan_poses(context.project, directory);
   const std::size_t count = directory.scans.size();
   Imported imported{std::vector<Scan>(count), std::vector<ImportCounts>(count),
-                    std::vector<Digest>(count), std::vector<Digest>(count), poses.source};
+                    std::vector<Digest>(count), poses.source};
   const auto import_scan = [&](std::size_t i, std::size_t) {
     const ScanFile& file = directory.scans[i];
-    imported.keys[i] = unit_key(file, directory.format, context);
-    ImportedUnit unit = imported_unit(file, directory.format, imported.keys[i], context);
+    ImportedUnit unit = imported_unit(file, directory.format, context);
     imported.digests[i] = digest_of(unit.cloud);
     imported.counts[i] = unit.counts;
     imported.scans[i] = {

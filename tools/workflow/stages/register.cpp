@@ -1,9 +1,8 @@
-#include <cmath>
-
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
 #include "slam/registration/sequence.hpp"
+#include "tools/workflow/figures.hpp"
 #include "tools/workflow/pair_matching.hpp"
 #include "tools/workflow/results.hpp"
 #include "tools/workflow/stages/stages.hpp"
@@ -33,21 +32,9 @@ SequenceMatch trusted(const std::vector<Pose>& poses, const OdometryNoise& noise
 
 SequenceMatch matched(const Imported& imported, StageContext& context) {
   const Settings& settings = context.project.settings;
-  PairMatching matching(imported, settings, context.units);
+  PairMatching matching(context.results, settings, context.units);
   return match_in_order(given_poses(imported), matching.matcher(), settings.sequence,
                         context.progress);
-}
-
-/// Root mean square over all pairs of points of all matched steps, m.
-double rms(const SequenceMatch& match) {
-  double squares = 0, pairs = 0;
-  for (const SequenceStep& step : match.steps) {
-    if (!step.matched) continue;
-    const auto count = static_cast<double>(step.alignment.pairs);
-    squares += count * step.alignment.rms * step.alignment.rms;
-    pairs += count;
-  }
-  return pairs > 0 ? std::sqrt(squares / pairs) : 0;
 }
 
 void report(const SequenceMatch& match, const Imported& imported, Manifest& record) {
@@ -63,7 +50,7 @@ void report(const SequenceMatch& match, const Imported& imported, Manifest& reco
     }
   }
   record.summary = fmt::format("{} of {} pairs matched, rms {:.1f} mm", good, match.steps.size(),
-                               1000 * rms(match));
+                               1000 * rms_of(match));
 }
 
 void work(StageContext& context) {

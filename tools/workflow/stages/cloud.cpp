@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include "meshing/normals.hpp"
+#include "slam/io/frames.hpp"
+#include "slam/io/g2o.hpp"
+#include "slam/io/ply.hpp"
+#include "slam/io/tum.hpp"
+#include "tools/workflow/results.hpp"
+#include "tools/workflow/stages/stages.hpp"
+#include "tools/workflow/trajectory_figures.hpp"
+
+namespace planum {
+namespace {
+
+World unlevelled_world(const Imported& imported, const Relaxed& relaxed) {
+  World world;
+  for (const Scan& scan : imported.scans) world.odometry.push_back(scan.world_from_scan);
+  world.poses = relaxed.graph.poses;
+  world.is_mapped.assign(world.poses.size(), 0);
+  for (const std::size_t scan : relaxed.components.front()) world.is_mapped[scan] = 1;
+  return world;
+}
+
+/// The points of all mapped scans; a point's scan is its position in the list of all scans.
+Cloud consistent_cloud(const Imported& imported, const World& world) {
+  std::vector<Scan> scans;
+  for (std::size_t i = 0; i < imported.scans.size(); ++i) {
+    scans.push_back({.id = imported.scans[i].id, .world_from_scan = world.poses[i]});
+    if (world.is_mapped[i]) scans.back().cloud = imported.scans[i].cloud;
+  }
+  return merged(scans);
+}
+
+/// Turns the world about the place of the first scan, so that it stays where its pose file has it.
+void level(World& world, Cloud& cloud) {
+  struct {
+    Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+    double confidence = 0;
+  } up;
+  const Eigen::Vector3d pivot = world.odometry.front().translation();
+  const Eigen::Quaterniond turn =
+      Eigen::Quaterniond::FromTwoVectors(up.up, Eigen::Vector3d::UnitZ());
+  world.world_from_input = Eigen::Translation3d(pivot) * turn * Eigen::Translation3d(-pivot);
+  world.up_confidence = up.confidence;
+  cloud = transformed(cloud, world.world_from_input);
+  for (std::vector<Pose>* poses : {&world.odometry, &world.poses}) {
+    for (Pose& pose : *poses) pose = orthonormalized(world.world_from_input * pose);
+  }
+}
+
+G2oGraph g2o_graph(const Imported& imported, const Relaxed& relaxed, const World& world) {
+  const auto id = [&](std::size_t scan) { return imported.scans[scan].number; };
+  G2oGraph graph;
+  for (std::size_t i = 0; i < world.poses.size(); ++i) {
+    graph.vertices.push_back({id(i), world.poses[i]});
+  }
+  graph.fixed = {id(relaxed.components.front().front())};
+  for (const Edge& edge : relaxed.graph.edges) {
+    if (edge.accepted) {
+      graph.edges.push_back(
+          {id(edge.from), id(edge.to), edge.from_from_to, g2o_from_information(edge.information)});
+    } else {
+      graph.comments.push_back(
+          fmt::format("rejected {} {}: {}", id(edge.from), id(edge.to), edge.reason));
+    }
+  }
+  return graph;
+}
+
+/// For viewers of 3DTK: where each scan was at first, after matching, and at last.
+void write_all_frames(const std::filesystem::path& directory, const Imported& imported,
+                      const SequenceMatch& registered, const World& world) {
+  std::filesystem::create_directories(directory);
+  for (std::size_t i = 0; i < world.poses.size(); ++i) {
+    const Pose after_matching = world.world_from_input * registered.poses[i];
+    const Frame frames[] = {
+        {world.odometry[i], FrameKind::icp},
+        {after_matching, FrameKind::icp},
+        {world.poses[i], world.is_mapped[i] ? FrameKind::lum : FrameKind::invalid}};
+    write_frames(directory / (imported.scans[i].id + ".frames"), frames);
+  }
+}
+
+void write_poses(StageContext& context, const Imported& imported, const World& world) {
+  write_tum(context.staging / "trajectory.tum", mapped_trajectory(imported, world));
+  write_tum(context.staging / "odometry.tum", odometry_trajectory(imported, world));
+  write_g2o(context.staging / "graph.g2o",
+            g2o_graph(imported, context.results.relaxed.get(), world));
+  write_all_frames(context.staging / "frames", imported, context.results.registered.get(), world);
+}
+
+void work(StageContext& context) {
+  const Imported& imported = context.results.imported.get();
+  World world = unlevelled_world(imported, context.results.relaxed.get());
+  Cloud cloud = consistent_cloud(imported, world);
+  cloud.normals = estimate_normals(cloud, scan_origins(world), context.project.settings.normals,
+                                   context.progress);
+  if (context.project.settings.level) level(world, cloud);
+  write_ply(context.staging / "cloud.ply", cloud);
+  write_poses(context, imported, world);
+  write_result(context.result, world);
+  context.record.summary =
+      fmt::format("{} points, world turned by {:.2f} degrees to be level", cloud.points.size(),
+                  degrees(rotation_angle(world.world_from_input)));
+  context.results.world.set(std::move(world));
+  context.results.cloud.set(std::move(cloud));
+}
+
+}  // namespace
+
+Stage cloud_stage() {
+  return {.name = "cloud",
+          .version = 1,
+          .unit = "points",
+          .needs = {"import", "register", "relax"},
+          .parameters = {"world", "cloud"},
+          .input_files = {},
+          .work = work};
+}
+
+}  // namespace planum

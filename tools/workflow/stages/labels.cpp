@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "tools/workflow/results.hpp"
+#include "tools/workflow/stages/stages.hpp"
+
+namespace planum {
+namespace {
+
+constexpr double level_enough = radians(5);
+
+/// Rooms are found in plan, so that "up" must be z.
+RoomMap rooms_of(const Labels& labels, const PolygonMap& map, StageContext& context) {
+  const double tilt = std::acos(std::clamp(labels.up.z(), -1.0, 1.0));
+  if (tilt > level_enough) {
+    context.record.warnings.push_back(fmt::format(
+        "no rooms: the world is {:.0f} degrees from level; [world] level = true levels it",
+        degrees(tilt)));
+    RoomMap none;
+    none.room_of_polygon.assign(map.polygons.size(), -1);
+    return none;
+  }
+  return find_rooms(context.results.cloud.get(), scan_origins(context.results.world.get()), map,
+                    context.project.settings.rooms);
+}
+
+std::string summary(const Labelled& labelled) {
+  std::array<std::size_t, 4> count{};
+  for (const PolygonLabel& polygon : labelled.labels.polygons) {
+    ++count[static_cast<std::size_t>(polygon.label)];
+  }
+  std::array<std::size_t, 3> openings{};
+  for (const Opening& opening : labelled.rooms.openings) {
+    ++openings[static_cast<std::size_t>(opening.kind)];
+  }
+  return fmt::format("{} floors, {} ceilings, {} walls; {} rooms, {} doors, {} windows",
+                     count[static_cast<std::size_t>(Label::floor)],
+                     count[static_cast<std::size_t>(Label::ceiling)],
+                     count[static_cast<std::size_t>(Label::wall)], labelled.rooms.rooms.size(),
+                     openings[static_cast<std::size_t>(OpeningKind::door)],
+                     openings[static_cast<std::size_t>(OpeningKind::window)]);
+}
+
+void work(StageContext& context) {
+  const PolygonMap& map = context.results.polygons.get();
+  Labelled labelled;
+  labelled.labels = label(map, context.project.settings.labels);
+  labelled.rooms = rooms_of(labelled.labels, map, context);
+  write_result(context.result, labelled);
+  context.record.summary = summary(labelled);
+  context.results.labelled.set(std::move(labelled));
+}
+
+}  // namespace
+
+Stage labels_stage() {
+  return {.name = "labels",
+          .version = 1,
+          .unit = "polygons",
+          .needs = {"cloud", "polygons"},
+          .parameters = {"labels", "rooms"},
+          .input_files = {},
+          .work = work};
+}
+
+}  // namespace planum

@@ -1,0 +1,117 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "slam/graph/loops.hpp"
+#include "slam/graph/pose_graph.hpp"
+#include "slam/graph/relax_lu_milios.hpp"
+#include "tools/workflow/pair_matching.hpp"
+#include "tools/workflow/results.hpp"
+#include "tools/workflow/stages/stages.hpp"
+
+namespace planum {
+namespace {
+
+/// The poses after matching in order, and one edge a step.
+PoseGraph graph_of(const SequenceMatch& match) {
+  PoseGraph graph{match.poses, {}};
+  for (std::size_t i = 0; i < match.steps.size(); ++i) {
+    const SequenceStep& step = match.steps[i];
+    graph.edges.push_back({.from = i,
+                           .to = i + 1,
+                           .from_from_to = step.alignment.target_from_source,
+                           .information = step.alignment.information,
+                           .rms = step.alignment.rms,
+                           .overlap = step.alignment.overlap,
+                           .matched = step.matched,
+                           .reason = step.reason});
+  }
+  return graph;
+}
+
+/// Scans that hang together, the largest group first.
+std::vector<std::vector<std::size_t>> groups_of(const PoseGraph& graph) {
+  auto groups = components(graph).members();
+  std::stable_sort(groups.begin(), groups.end(),
+                   [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return groups;
+}
+
+void add_loops(PoseGraph& graph, StageContext& context) {
+  const Settings& settings = context.project.settings;
+  PairMatching matching(context.results, settings, context.units);
+  const std::vector<Edge> loops =
+      find_loops(context.results.matching_scans.get(), graph, matching.loop_matcher(),
+                 settings.loops, context.progress);
+  graph.edges.insert(graph.edges.end(), loops.begin(), loops.end());
+}
+
+Relaxed relaxed(const PoseGraph& graph, StageContext& context) {
+  const Settings& settings = context.project.settings;
+  LuMiliosParams params = settings.relaxation;
+  params.pairing = pairing_of(settings);
+  GraphResult result =
+      relax_lu_milios(graph, context.results.matching_scans.get(), params, context.progress);
+  return {std::move(result.graph), result.residual_before, result.residual_after,
+          result.iterations,       result.converged,       {}};
+}
+
+/// Names the scans that are not part of the map.
+void report_groups(const Relaxed& relaxed, const Imported& imported, Manifest& record) {
+  std::string lost;
+  for (std::size_t i = 1; i < relaxed.components.size(); ++i) {
+    for (const std::size_t scan : relaxed.components[i]) {
+      lost += (lost.empty() ? "" : ", ") + imported.scans[scan].id;
+    }
+  }
+  if (lost.empty()) return;
+  record.shortcomings.push_back(
+      fmt::format("{} could not be connected to the other scans; the map shows the other {}", lost,
+                  relaxed.components.front().size()));
+}
+
+std::string summary(const Relaxed& relaxed) {
+  std::size_t accepted = 0, rejected = 0;
+  for (const Edge& edge : relaxed.graph.edges) {
+    if (edge.kind == EdgeKind::loop) ++(edge.accepted ? accepted : rejected);
+  }
+  return fmt::format("{} loops closed, {} rejected; rms {:.1f} -> {:.1f} mm{}", accepted, rejected,
+                     1000 * relaxed.residual_before, 1000 * relaxed.residual_after,
+                     relaxed.converged ? "" : ", not converged");
+}
+
+void work(StageContext& context) {
+  const Settings& settings = context.project.settings;
+  const Imported& imported = context.results.imported.get();
+  Relaxed result;
+  result.graph = graph_of(context.results.registered.get());
+  if (settings.relaxation_method == "none" || settings.registration_method == "none") {
+    context.record.summary = "the poses stay as they are";
+  } else {
+    if (settings.close_loops) add_loops(result.graph, context);
+    result = relaxed(result.graph, context);
+    context.record.summary = summary(result);
+    if (!result.converged) {
+      context.record.warnings.push_back(
+          fmt::format("the relaxation did not converge in {} iterations", result.iterations));
+    }
+  }
+  result.components = groups_of(result.graph);
+  report_groups(result, imported, context.record);
+  write_result(context.result, result);
+  context.results.relaxed.set(std::move(result));
+}
+
+}  // namespace
+
+Stage relax_stage() {
+  return {.name = "relax",
+          .version = 1,
+          .unit = "steps",
+          .needs = {"import", "register"},
+          .parameters = {"registration", "loops", "relaxation"},
+          .input_files = {},
+          .work = work};
+}
+
+}  // namespace planum
