@@ -71,7 +71,7 @@ void follow_face(const Face& face, const std::array<float, 8>& distance,
     else
       do end = (end + 3) % 4;
       while (!(inside[end] && !inside[(end + 1) % 4]));
-    next[std::size_t(face.edges[end])] = face.edges[k];
+    next[std::size_t(face.edges[k])] = face.edges[end];
   }
 }
 

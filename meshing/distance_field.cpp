@@ -6,6 +6,7 @@
 #include <string>
 
 #include "meshing/block_corners.hpp"
+#include "meshing/surface_gaps.hpp"
 #include "meshing/surface_patches.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
@@ -266,8 +267,8 @@ void find_crossings(const SurfacePatches& patches, const std::vector<Eigen::Vect
       Eigen::Vector3f at(float(cell % block_width), float(cell / block_width % block_width),
                          float(cell / (block_width * block_width)));
       at[Eigen::Index(axis)] += distance[i] / (distance[i] - distance[j]);
-      if (parts.has_data(at))
-        field.crossings[block * block_cells + cell] |= std::uint8_t(1 << axis);
+      field.crossings[block * block_cells + cell] |=
+          std::uint8_t((parts.has_data(at) ? crossing_near_data : crossing) << axis);
     }
   }
 }
@@ -292,8 +293,9 @@ void compute_block(const SurfacePatches& patches, CellKey block, const SurfacePa
 DistanceField distance_field(const Cloud& cloud, const SurfaceParams& params,
                              const Progress& progress) {
   check(cloud, params);
-  const SurfacePatches patches = surface_patches(cloud, params.voxel);
+  SurfacePatches patches = surface_patches(cloud, params.voxel);
   if (patches.patches.empty()) throw Error("mesh: no point has a normal", ErrorKind::no_result);
+  patches = with_gaps_filled(std::move(patches), params.gap_reach);
   DistanceField field;
   field.lattice = patches.lattice;
   field.blocks = blocks_near(patches);

@@ -9,13 +9,16 @@
 
 namespace planum {
 
+/// The surface passes between two corners; whether there are points near that place.
+inline constexpr std::uint8_t crossing = 1, crossing_near_data = 1 | 8;
+
 /// Signed distances to a surface at the corners of cells, where they are known. Corner (i, j, k) is
 /// the lowest corner of cell (i, j, k), and is stored in the block of that cell.
 struct DistanceField {
   Lattice lattice;
   BlockSet blocks;
   std::vector<float> distance;  ///< m, positive in free space; not a number: unknown
-  /// Bit a: between this corner and the next one along axis a there is surface.
+  /// `crossing << a`: between this corner and the next one along axis a there is surface.
   std::vector<std::uint8_t> crossings;
 };
 

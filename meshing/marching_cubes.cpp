@@ -43,14 +43,19 @@ bool has_surface(const BlockCorners& corners, std::size_t lowest) {
     inside += d < 0;
   }
   if (inside == 0 || inside == 8) return false;
+  int crossed = 0, near_data = 0;
   for (int edge = 0; edge < 12; ++edge) {
     const auto [a, b] = corners_of_edge(edge);
     const std::size_t i = lowest + cell_corners[std::size_t(a)];
     const std::size_t j = lowest + cell_corners[std::size_t(b)];
     if ((corners.distance[i] < 0) == (corners.distance[j] < 0)) continue;
-    if ((corners.crossings[i] >> (edge / 4) & 1) == 0) return false;
+    const int found = corners.crossings[i] >> (edge / 4);
+    if ((found & crossing) == 0) return false;
+    ++crossed;
+    near_data += (found & crossing_near_data) == crossing_near_data;
   }
-  return true;
+  // One without data is a gap in the surface, more are its border.
+  return 4 * (crossed - near_data) <= crossed;
 }
 
 /// A set of edges of a block's corners (3 * corner + axis), with the number of those before each.

@@ -18,6 +18,7 @@ struct NormalParams {
   int min_points = 8;          ///< fewer points are no plane
   double min_width = 0.3;      ///< of a neighbourhood against its length (standard deviations);
                                ///< narrower ones are lines
+  double max_scatter = 0.03;   ///< m, standard deviation of the points across a plane
   double max_thickness = 0.4;  ///< of a neighbourhood against its width; thicker ones are no planes
 };
 

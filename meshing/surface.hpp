@@ -10,6 +10,8 @@ namespace planum {
 struct SurfaceParams {
   double voxel = 0.05;  ///< m, side of the cells
   double radius = 1.5;  ///< voxels, tangent planes are averaged this far along the surface
+  double gap_reach =
+      3;  ///< voxels, gaps between scan lines are closed up to twice this width; 0: none
 };
 
 /// The surface through the points as triangles: signed distance on a sparse grid, then marching

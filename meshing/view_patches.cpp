@@ -135,7 +135,7 @@ bool well_formed(const Shape& shape, double count, const NormalParams& params) {
   const Eigen::Array3d deviation = shape.variances.array().sqrt();
   return count >= params.min_points && deviation[1] > 0 &&
          deviation[1] >= params.min_width * deviation[2] &&
-         deviation[0] <= params.max_thickness * deviation[1];
+         deviation[0] <= params.max_thickness * deviation[1] && deviation[0] <= params.max_scatter;
 }
 
 /// Patches around one patch, itself among them.
@@ -156,6 +156,23 @@ std::array<double, 10> sum_of(const PatchGrid& grid, const Neighbours& neighbour
   return sum;
 }
 
+/// Whether the scanners are behind a plane. Where those of the patch itself graze the plane, all
+/// patches in the plane vote.
+bool behind(const PatchGrid& grid, const ViewPatch& own, const Neighbours& neighbours,
+            const Eigen::Vector3f& normal, const Shape& shape) {
+  constexpr float grazing = 0.3f;  // sine of the angle between view and plane
+  float ahead = normal.dot(own.view);
+  if (std::abs(ahead) > grazing * float(own.moments[0])) return ahead < 0;
+  const double farthest = most_deviations * std::sqrt(shape.variances[0] + least_variance);
+  for (const std::uint32_t k : neighbours) {
+    const auto& m = grid.patches[k].moments;
+    const Eigen::Vector3d mean = Eigen::Vector3d(m[1], m[2], m[3]) / m[0];
+    if (std::abs(shape.normal.dot(mean - shape.centroid)) <= farthest)
+      ahead += normal.dot(grid.patches[k].view);
+  }
+  return ahead < 0;
+}
+
 PatchPlane plane_around(const PatchGrid& grid, std::uint32_t self, const Neighbours& neighbours,
                         const NormalParams& params) {
   const ViewPatch& own = grid.patches[self];
@@ -170,7 +187,7 @@ PatchPlane plane_around(const PatchGrid& grid, std::uint32_t self, const Neighbo
   auto shape = shape_of(sum);
   if (!shape) return {};
   Eigen::Vector3f normal = shape->normal.cast<float>();
-  if (normal.dot(own.view) < 0) normal = -normal;
+  if (behind(grid, own, neighbours, normal, *shape)) normal = -normal;
   // The scanners tell the other patches' side of that plane.
   sum = sum_of(
       grid, neighbours, [&](const ViewPatch& p) { return p.view.dot(normal) > 0; }, kept);
