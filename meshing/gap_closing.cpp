@@ -10,8 +10,8 @@
 namespace planum {
 namespace {
 
-constexpr double max_cosine_of_ear = 0.7;  ///< of the turn between its edges: 135 degrees are open
-constexpr double min_agreement = 0.1;      ///< cosine between an ear and the triangles beside it
+constexpr double max_cosine_of_ear = 0.985;  ///< edges of an ear turn by ten degrees at least
+constexpr double min_agreement = 0.1;        ///< cosine between an ear and the triangles beside it
 
 /// A corner of the rim that may be closed.
 struct Ear {
