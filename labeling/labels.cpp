@@ -7,20 +7,8 @@
 #include "labeling/label_scene.hpp"
 #include "labeling/level_labels.hpp"
 #include "labeling/wall_labels.hpp"
-#include "slam/core/error.hpp"
-#if __has_include("meshing/up_direction.hpp")
 #include "meshing/up_direction.hpp"
-#else
-namespace planum {
-struct UpEstimate {
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  double confidence = 1;
-};
-inline UpEstimate estimate_up(const std::vector<Eigen::Vector3d>&, const std::vector<double>&) {
-  return {};
-}
-}  // namespace planum
-#endif
+#include "slam/core/error.hpp"
 
 namespace planum {
 namespace {
@@ -29,6 +17,7 @@ void check(const LabelParams& params) {
   if (!(params.max_tilt > 0 && params.max_tilt < pi / 4))
     throw Error("labels: max_tilt is " + std::to_string(params.max_tilt) +
                 " rad, must be above 0 and below 0.785");
+  if (!(params.prior_up.norm() > 0)) throw Error("labels: prior_up has no direction");
   const auto not_negative = [](const char* option, double value) {
     if (!(value >= 0))
       throw Error("labels: " + std::string(option) + " is " + std::to_string(value) +
@@ -45,14 +34,15 @@ void check(const LabelParams& params) {
   not_negative("min_wall_area", params.min_wall_area);
 }
 
-UpEstimate up_of(const PolygonMap& map) {
-  std::vector<Eigen::Vector3d> normals;
-  std::vector<double> areas;
+/// Empty if too little of the map is level.
+std::optional<UpDirection> up_of(const PolygonMap& map, const Eigen::Vector3d& prior) {
+  std::vector<Eigen::Vector3f> normals;
+  std::vector<float> areas;
   for (const MapPolygon& polygon : map.polygons) {
-    normals.push_back(polygon.plane.normal);
-    areas.push_back(polygon.area);
+    normals.push_back(polygon.plane.normal.cast<float>());
+    areas.push_back(static_cast<float>(polygon.area));
   }
-  return estimate_up(normals, areas);
+  return estimate_up(normals, areas, prior);
 }
 
 /// Labels the surfaces of one attitude whose doubt is small, if they are large or at the level of
@@ -100,9 +90,11 @@ const char* name(Label label) {
 Labels label(const PolygonMap& map, const LabelParams& params) {
   check(params);
   Labels labels;
-  const UpEstimate up = up_of(map);
-  labels.up = up.up;
-  labels.up_confidence = up.confidence;
+  labels.up = params.prior_up.normalized();
+  if (const auto up = up_of(map, labels.up)) {
+    labels.up = up->up;
+    labels.up_confidence = up->confidence;
+  }
   const LabelScene scene = label_scene(map, labels.up, params.max_tilt);
   labels.polygons.assign(map.polygons.size(), {Label::unknown, 1});
   label_levels(scene, Attitude::facing_up, Label::floor, floor_doubts(scene, params), params,

@@ -27,6 +27,7 @@ struct Labels {
 };
 
 struct LabelParams {
+  Eigen::Vector3d prior_up = Eigen::Vector3d::UnitZ();  ///< roughly up; the scene says exactly
   double max_tilt = radians(15);  ///< of a floor from level, of a wall from upright
   double same_level = 0.12;       ///< m, surfaces closer in height are one level
   double min_headroom = 1.8;      ///< m, between a floor and what is above it
