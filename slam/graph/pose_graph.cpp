@@ -1,8 +1,27 @@
 #include "slam/graph/pose_graph.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 namespace planum {
+
+PoseGraph pose_graph(const SequenceMatch& sequence) {
+  PoseGraph graph{.poses = sequence.poses, .edges = {}};
+  for (std::size_t i = 0; i < sequence.steps.size(); ++i) {
+    const SequenceStep& step = sequence.steps[i];
+    graph.edges.push_back({.from = i,
+                           .to = i + 1,
+                           .from_from_to = step.alignment.target_from_source,
+                           .information = step.alignment.information,
+                           .odometry_information = step.odometry_information,
+                           .rms = step.alignment.rms,
+                           .overlap = step.alignment.overlap,
+                           .kind = EdgeKind::odometry,
+                           .matched = step.matched,
+                           .reason = step.reason});
+  }
+  return graph;
+}
 
 Vector6d edge_error(const Edge& edge, const std::vector<Pose>& poses) {
   return log_se3(edge.from_from_to.inverse() * poses[edge.from].inverse() * poses[edge.to]);
@@ -14,22 +33,31 @@ std::vector<std::vector<std::size_t>> Components::members() const {
   return result;
 }
 
-Components components(const PoseGraph& graph) {
-  // Each pose points to a lower one of its component, or to itself.
-  std::vector<std::size_t> parent(graph.poses.size());
+std::vector<std::size_t> first_connected(
+    std::size_t count, std::span<const std::pair<std::size_t, std::size_t>> pairs) {
+  // Each thing points to a lower one that it is connected with, or to itself.
+  std::vector<std::size_t> parent(count);
   std::iota(parent.begin(), parent.end(), std::size_t{0});
-  const auto root = [&](std::size_t i) {
+  const auto first = [&](std::size_t i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
-  for (const Edge& edge : graph.edges) {
-    if (!edge.accepted || !edge.matched) continue;
-    const std::size_t a = root(edge.from), b = root(edge.to);
-    parent[std::max(a, b)] = std::min(a, b);
+  for (const auto& [a, b] : pairs) {
+    const std::size_t first_a = first(a), first_b = first(b);
+    parent[std::max(first_a, first_b)] = std::min(first_a, first_b);
   }
-  Components result{.of_pose = std::vector<std::size_t>(graph.poses.size()), .count = 0};
-  for (std::size_t i = 0; i < parent.size(); ++i)
-    result.of_pose[i] = root(i) == i ? result.count++ : result.of_pose[root(i)];
+  for (std::size_t i = 0; i < count; ++i) parent[i] = first(i);
+  return parent;
+}
+
+Components components(const PoseGraph& graph) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (const Edge& edge : graph.edges)
+    if (edge.accepted && edge.matched) pairs.emplace_back(edge.from, edge.to);
+  const std::vector<std::size_t> first = first_connected(graph.poses.size(), pairs);
+  Components result{.of_pose = std::vector<std::size_t>(first.size()), .count = 0};
+  for (std::size_t i = 0; i < first.size(); ++i)
+    result.of_pose[i] = first[i] == i ? result.count++ : result.of_pose[first[i]];
   return result;
 }
 

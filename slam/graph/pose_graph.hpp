@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "slam/core/pose.hpp"
+#include "slam/registration/sequence.hpp"
 
 namespace planum {
 
@@ -15,13 +18,15 @@ enum class EdgeKind {
 
 /// A measured relative pose of two scans.
 struct Edge {
-  std::size_t from = 0, to = 0;           ///< positions in PoseGraph::poses
-  Pose from_from_to = Pose::Identity();   ///< measured
+  std::size_t from = 0, to = 0;          ///< positions in PoseGraph::poses
+  Pose from_from_to = Pose::Identity();  ///< measured
   /// Of the error log_se3(measured^-1 * world_from_from^-1 * world_from_to), order
   /// [translation, rotation], 1/m^2 and 1/rad^2.
   Matrix6d information = Matrix6d::Identity();
-  double rms = 0;      ///< m, of the match; 0 if it is none
-  double overlap = 0;  ///< share of the points of `to` that have a pair in `from`
+  Matrix6d odometry_information =
+      Matrix6d::Zero();  ///< what of it is from odometry, not from a match
+  double rms = 0;        ///< m, of the match; 0 if it is none
+  double overlap = 0;    ///< share of the points of `to` that have a pair in `from`
   EdgeKind kind = EdgeKind::odometry;
   bool accepted = true;  ///< others are left out of account
   bool matched = true;   ///< false: odometry alone, because the scans could not be matched
@@ -34,8 +39,15 @@ struct PoseGraph {
   std::vector<Edge> edges;
 };
 
+/// The steps of a sequence as a graph.
+PoseGraph pose_graph(const SequenceMatch& sequence);
+
 /// The error of an edge with the poses of a graph, in the sense of Edge::information.
 Vector6d edge_error(const Edge& edge, const std::vector<Pose>& poses);
+
+/// For each of `count` things the first one that pairs, one after another, connect it with.
+std::vector<std::size_t> first_connected(
+    std::size_t count, std::span<const std::pair<std::size_t, std::size_t>> pairs);
 
 /// Scans that matches hold together: for each pose the number of its component, counted from 0 in
 /// the order of their first poses. Edges that are not accepted, or not matched, hold nothing.

@@ -1,0 +1,62 @@
+#include "slam/graph/path_covariance.hpp"
+
+#include <queue>
+
+#include <Eigen/Cholesky>
+
+namespace planum {
+namespace {
+
+/// m; how much a rotation counts when paths are compared.
+constexpr double lever = 5;
+
+double uncertainty(const Matrix6d& covariance) {
+  return covariance.diagonal().head<3>().sum() +
+         lever * lever * covariance.diagonal().tail<3>().sum();
+}
+
+struct Way {
+  std::size_t to;
+  Matrix6d covariance;      ///< of the way alone, in the frame where it ends
+  Matrix6d end_from_start;  ///< adjoint
+};
+
+}  // namespace
+
+std::vector<std::optional<Matrix6d>> path_covariances(const PoseGraph& graph, std::size_t start,
+                                                      const Matrix6d& step_noise) {
+  std::vector<std::vector<Way>> ways(graph.poses.size());
+  for (const Edge& edge : graph.edges) {
+    if (!edge.accepted) continue;
+    const Eigen::LLT<Matrix6d> factor(edge.information);
+    if (factor.info() != Eigen::Success) continue;
+    const Matrix6d covariance = factor.solve(Matrix6d::Identity()) + step_noise;
+    const Matrix6d from_from_to = adjoint(edge.from_from_to);
+    ways[edge.from].push_back({edge.to, covariance, adjoint(edge.from_from_to.inverse())});
+    ways[edge.to].push_back(
+        {edge.from, from_from_to * covariance * from_from_to.transpose(), from_from_to});
+  }
+  std::vector<std::optional<Matrix6d>> result(graph.poses.size()), best(graph.poses.size());
+  // Dijkstra; equal uncertainties in the order of the scans.
+  using Entry = std::pair<double, std::size_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  best[start] = Matrix6d::Zero();
+  queue.emplace(0, start);
+  while (!queue.empty()) {
+    const std::size_t at = queue.top().second;
+    queue.pop();
+    if (result[at]) continue;
+    result[at] = best[at];
+    for (const Way& way : ways[at]) {
+      if (result[way.to]) continue;
+      const Matrix6d there =
+          way.end_from_start * *result[at] * way.end_from_start.transpose() + way.covariance;
+      if (best[way.to] && uncertainty(*best[way.to]) <= uncertainty(there)) continue;
+      best[way.to] = there;
+      queue.emplace(uncertainty(there), way.to);
+    }
+  }
+  return result;
+}
+
+}  // namespace planum

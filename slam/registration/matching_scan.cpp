@@ -1,0 +1,147 @@
+#include "slam/registration/matching_scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "slam/core/error.hpp"
+#include "slam/core/parallel.hpp"
+#include "slam/core/plane.hpp"
+#include "slam/registration/reduction.hpp"
+
+namespace planum {
+namespace {
+
+constexpr std::size_t points_per_block = 512;
+/// A patch counts as a plane if it is this much thinner than wide, and is no line.
+constexpr double most_thickness_by_width = 1.0 / 3;
+constexpr double least_width_by_length = 1.0 / 5;
+
+void check(const MatchingScanParams& params) {
+  const auto require = [](bool good, const char* option, auto value, const char* limit) {
+    if (!good)
+      throw Error(fmt::format("registration: {} must be {}, got {}", option, limit, value));
+  };
+  require(params.voxel >= 0 && std::isfinite(params.voxel), "voxel", params.voxel, ">= 0 m");
+  require(params.coarse_voxel > 0 && std::isfinite(params.coarse_voxel), "coarse_voxel",
+          params.coarse_voxel, "> 0 m");
+  require(params.neighbours >= 4, "neighbours", params.neighbours, ">= 4");
+  require(params.most_neighbours >= params.neighbours, "most_neighbours", params.most_neighbours,
+          ">= neighbours");
+}
+
+/// A choice of points, and for each the sums over the points that it stands for, relative to it.
+struct Choice {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<PointMoments> moments;
+};
+
+Choice choice_of(std::span<const Eigen::Vector3f> points, double voxel) {
+  Choice result;
+  if (voxel == 0) {
+    result.points.assign(points.begin(), points.end());
+    result.moments.resize(points.size());
+    for (PointMoments& m : result.moments) m.add(Eigen::Vector3d::Zero());
+    return result;
+  }
+  const VoxelGrid grid = voxel_grid(points, voxel);
+  result.points.reserve(grid.representative.size());
+  for (const std::uint32_t i : grid.representative) result.points.push_back(points[i]);
+  result.moments.resize(result.points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t v = grid.voxel_of_point[i];
+    result.moments[v].add((points[i] - result.points[v]).cast<double>());
+  }
+  return result;
+}
+
+/// The sums of `moments` over points that are all moved by `shift`.
+PointMoments moved(const PointMoments& moments, const Eigen::Vector3d& shift) {
+  PointMoments result = moments;
+  const Eigen::Matrix3d mixed = moments.sum * shift.transpose();
+  result.squares += mixed + mixed.transpose() + moments.count * shift * shift.transpose();
+  result.sum += moments.count * shift;
+  return result;
+}
+
+/// The plane through neighbours of a point and all that they stand for; empty if they are too few,
+/// a line, or no plane at all.
+std::optional<LocalPlane> plane_through(std::span<const Neighbour> neighbours,
+                                        const Choice& choice) {
+  if (neighbours.size() < 4) return std::nullopt;
+  const Eigen::Vector3f origin = choice.points[neighbours.front().index];
+  PointMoments moments;
+  for (const Neighbour& n : neighbours)
+    moments += moved(choice.moments[n.index], (choice.points[n.index] - origin).cast<double>());
+  const std::optional<PlaneFit> fit = fit_plane(moments);
+  if (!fit) return std::nullopt;
+  const Eigen::Vector3d deviation = fit->variances.cwiseSqrt();
+  if (deviation[1] < least_width_by_length * deviation[2] ||
+      deviation[0] > most_thickness_by_width * deviation[1])
+    return std::nullopt;
+  const Eigen::Vector3d mean = fit->centroid + origin.cast<double>();
+  const double side = fit->plane.normal.dot(mean) > 0 ? -1 : 1;
+  LocalPlane plane;
+  plane.mean = mean.cast<float>();
+  plane.normal = (side * fit->plane.normal).cast<float>();
+  // Three of the degrees of freedom went into the plane.
+  plane.thickness =
+      static_cast<float>(deviation[0] * std::sqrt(moments.count / (moments.count - 3)));
+  plane.reach = static_cast<float>(2 * deviation[2]);  // an even disc of radius r deviates by r / 2
+  plane.tilt_variance =
+      static_cast<float>(plane.thickness * plane.thickness / (moments.count * fit->variances[1]));
+  return plane;
+}
+
+double median(std::vector<float> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Fits the planes of points [begin, end) and notes the distances to the next points.
+void fit_planes(const Choice& choice, const MatchingScanParams& params, std::size_t begin,
+                std::size_t end, MatchingScan& scan, std::vector<float>& spacing) {
+  std::vector<Neighbour> neighbours;
+  for (std::size_t i = begin; i < end; ++i) {
+    std::optional<LocalPlane> plane;
+    for (std::size_t k = params.neighbours; !plane && k <= params.most_neighbours; k *= 2) {
+      scan.tree.k_nearest(scan.points[i], k, neighbours);
+      plane = plane_through(neighbours, choice);
+    }
+    scan.planes[i] = plane.value_or(LocalPlane{.mean = scan.points[i]});
+    spacing[i] = neighbours.size() > 1 ? std::sqrt(neighbours[1].squared_distance) : 0;
+  }
+}
+
+}  // namespace
+
+MatchingScan matching_scan(const Cloud& cloud, const MatchingScanParams& params) {
+  check(params);
+  const Choice choice = choice_of(cloud.points, params.voxel);
+  MatchingScan scan{.points = choice.points,
+                    .planes = std::vector<LocalPlane>(choice.points.size()),
+                    .coarse = voxel_grid(choice.points, params.coarse_voxel).representative,
+                    .tree = KdTree(choice.points)};
+  std::vector<float> spacing(scan.points.size());
+  parallel_for(scan.points.size(), points_per_block, [&](std::size_t begin, std::size_t end) {
+    fit_planes(choice, params, begin, end, scan, spacing);
+  });
+  std::vector<float> thickness;
+  for (const LocalPlane& plane : scan.planes)
+    if (plane.known()) thickness.push_back(plane.thickness);
+  scan.noise = median(std::move(thickness));
+  scan.spacing = median(std::move(spacing));
+  double squares = 0;
+  for (const Eigen::Vector3f& p : scan.points) squares += p.squaredNorm();
+  if (!scan.points.empty())
+    scan.radius = std::sqrt(squares / static_cast<double>(scan.points.size()));
+  scan.patch_points = static_cast<double>(params.neighbours);
+  return scan;
+}
+
+}  // namespace planum

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "slam/core/pose.hpp"
+#include "slam/registration/matching_scan.hpp"
+
+namespace planum {
+
+/// What the distance of a pair is measured to.
+enum class Pairing {
+  point_to_point,  ///< the nearest point of the target (Besl & McKay 1992)
+  point_to_plane,  ///< the local plane of that point (Chen & Medioni 1992)
+};
+
+/// Which pairs are taken.
+struct PairGate {
+  double distance = 0;  ///< m, to the nearest target point
+  double residual = 0;  ///< m, to the local plane (point_to_plane only); weight 0 is reached here
+  double max_normal_angle = 0;  ///< rad, pairs whose surfaces face more apart are dropped
+};
+
+/// A source point and what it is matched with, both in the target's frame.
+struct Pair {
+  Eigen::Vector3d source;  ///< m
+  Eigen::Vector3d target;  ///< m, the nearest point, or a point on its local plane
+  Eigen::Vector3d normal;  ///< unit, of the local plane; zero in point_to_point where unknown
+  double weight = 1;
+  double tilt_variance = 0;  ///< rad^2, of the normal
+};
+
+/// Finds pairs again and again while a source moves towards its target; remembers where in the
+/// tree each point ended, so that the next search is short.
+class PairFinder {
+ public:
+  /// `selection` are positions of source points. Both scans must outlive the finder.
+  PairFinder(const MatchingScan& source, const MatchingScan& target,
+             std::vector<std::uint32_t> selection);
+
+  /// Pairs in the order of the selection.
+  std::vector<Pair> find(const Pose& target_from_source, Pairing pairing, const PairGate& gate);
+
+  std::size_t selected() const { return selection_.size(); }
+
+  /// How many pairs there are for each independent one: with point_to_plane a selected point
+  /// carries the noise of all the points of its plane, which its neighbours carry too.
+  double redundancy(Pairing pairing) const;
+
+ private:
+  const MatchingScan& source_;
+  const MatchingScan& target_;
+  std::vector<std::uint32_t> selection_;
+  std::vector<std::uint32_t> leaf_hints_;
+};
+
+/// Positions of at most `most` points, evenly over the list of `count`.
+std::vector<std::uint32_t> even_selection(std::size_t count, std::size_t most);
+
+}  // namespace planum
