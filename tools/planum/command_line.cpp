@@ -26,7 +26,7 @@ std::string overview(const CLI::App& app) {
       "usage: planum COMMAND [ARGUMENTS]\n"
       "\n";
   for (const CLI::App* command : app.get_subcommands({})) {
-    text += fmt::format("  {:<10} {}\n", command->get_name(), command->get_description());
+    text += fmt::format("  {:<11} {}\n", command->get_name(), command->get_description());
   }
   text +=
       "\n"
@@ -78,6 +78,7 @@ void add_commands(CLI::App& app) {
   add_run_command(app);
   add_status_command(app);
   add_config_command(app);
+  add_evaluate_command(app);
   add_view_command(app);
   add_polygonize_command(app);
   add_simulate_command(app);

@@ -42,10 +42,10 @@ std::string room_rows(const Building& building, const std::vector<Room>& rooms,
   for (const TrueRoom& room : building.rooms) truth.push_back(room.centre);
   for (const Room& room : rooms) found.push_back((building_from_world * room.centre).head<2>());
   const std::vector<int> match = matched(truth, found, room_gate);
-  std::string text = fmt::format("{:<18}  {:<20}  {}\n", "room", "true size", "in the map");
+  std::string text = fmt::format("{:<26}{:<23}{}\n", "room", "true", "in the map");
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const TrueRoom& room = building.rooms[i];
-    text += fmt::format("  {:<16}  {:.2f} x {:.2f} x {:.2f} m   ", room.name,
+    text += fmt::format("  {:<24}{:.2f} x {:.2f} x {:.2f} m   ", room.name,
                         std::min(room.width, room.depth), std::max(room.width, room.depth),
                         room.height);
     if (match[i] < 0) {
@@ -72,7 +72,7 @@ std::string door_rows(const Building& building, const std::vector<Opening>& open
   std::string text = "door\n";
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const TrueDoor& door = building.doors[i];
-    text += fmt::format("  {:<16}  {:.2f} x {:.2f} m          ",
+    text += fmt::format("  {:<24}{:.2f} x {:.2f} m          ",
                         door.between[0] + "-" + door.between[1], door.width, door.height);
     if (match[i] < 0) {
       text += "not found\n";

@@ -2,6 +2,7 @@
 
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
+#include "slam/evaluation/trajectory_error.hpp"
 #include "slam/io/tum.hpp"
 #include "slam/sensor/demo_building.hpp"
 #include "tools/planum/arguments.hpp"
@@ -10,7 +11,7 @@
 #include "tools/planum/comparison.hpp"
 #include "tools/planum/demo_case.hpp"
 #include "tools/planum/run_project.hpp"
-#include "tools/workflow/trajectory_figures.hpp"
+#include "tools/workflow/results.hpp"
 
 namespace planum {
 namespace {
@@ -30,20 +31,21 @@ void check_directory(const std::filesystem::path& directory) {
   }
 }
 
-std::string error_line(const char* what, const TrajectoryFigures& figures) {
-  return fmt::format("  {:<16}  {:.3f} m rmse, {:.3f} m at most, {:.2f} degrees on average\n", what,
-                     figures.ate_rmse, figures.ate_max, degrees(figures.rot_mean));
+std::string error_line(const char* what, const TrajectoryError& error) {
+  return fmt::format("  {:<24}{:.3f} m rmse, {:.3f} m at most, {:.2f} degrees on average\n", what,
+                     error.ape_translation.rmse, error.ape_translation.max,
+                     error.ape_rotation.mean);
 }
 
 void print_comparison(const Project& project, const Building& building) {
   const auto output = output_directory(project);
   const Trajectory truth = read_tum(resolved(project, project.settings.truth));
-  const Trajectory after = read_tum(output / "trajectory.tum");
-  const Trajectory before = read_tum(output / "odometry.tum");
-  fmt::print("\ntrajectory error\n{}{}\n",
-             error_line("odometry", trajectory_figures(before, truth)),
-             error_line("map", trajectory_figures(after, truth)));
-  const Pose building_from_world = demo_poses().front() * truth_from_estimate(after, truth);
+  const auto before = trajectory_error(read_tum(output / "odometry.tum"), truth);
+  const auto after = trajectory_error(read_tum(output / "trajectory.tum"), truth);
+  fmt::print("\ntrajectory error\n{}{}\n", error_line("odometry", before),
+             error_line("map", after));
+  // true_poses.txt is in the frame of the building, truth.tum in that of the first pose.
+  const Pose building_from_world = demo_poses().front() * after.truth_from_estimate;
   Results results(CacheLayout{output}, project.settings.matching);
   fmt::print("{}\n", comparison_text(building, results.labelled.get().rooms, building_from_world));
 }

@@ -50,7 +50,22 @@ RunSummary run_project(const Project& project, const RunOptions& options, Consol
 }
 
 std::string results_text(const Project& project) {
-  return fmt::format("The map is in {}\n", output_directory(project).string());
+  const std::filesystem::path output = output_directory(project);
+  const std::pair<const char*, const char*> files[] = {
+      {"topview.png", "the plan: rooms, doors, the path before and after"},
+      {"map.obj, map.ply", "the polygon map as triangles, coloured by label"},
+      {"polygons.json", "the polygon map with labels, rooms and openings, for programs"},
+      {"cloud.ply, mesh.ply", "what it was made from"},
+      {"trajectory.tum", "where the scans were taken"},
+      {"report.json", "all figures"}};
+  std::string text = fmt::format("{}/\n", output.string());
+  for (const auto& [names, meaning] : files) {
+    const std::string first = std::string(names).substr(0, std::string_view(names).find(','));
+    if (std::filesystem::exists(output / first)) {
+      text += fmt::format("  {:<22}{}\n", names, meaning);
+    }
+  }
+  return text;
 }
 
 void throw_shortcomings(const RunSummary& summary) {

@@ -37,9 +37,8 @@ void simulate_command(SimulateArguments arguments) {
   Console console(arguments.work.quiet);
   const LabelledMesh model = read_obj(arguments.model);
   const std::vector<Pose> poses = read_pose_list(arguments.poses);
-  if (std::filesystem::exists(arguments.output / "scan000.slices")) {
-    throw Error(fmt::format("there are scans in {} already; choose another directory",
-                            arguments.output.string()),
+  if (std::filesystem::exists(arguments.output) && !std::filesystem::is_empty(arguments.output)) {
+    throw Error(fmt::format("{} is not empty; choose another directory", arguments.output.string()),
                 ErrorKind::usage);
   }
   write_simulated_scans(arguments.output, model.mesh, poses, simulator,

@@ -36,8 +36,12 @@ void write_simulated_scans(const std::filesystem::path& directory, const Triangl
 
 void write_simulated_trajectories(const std::filesystem::path& directory,
                                   std::span<const Pose> model_from_scan, const DriftParams& drift) {
-  write_tum(directory / "truth.tum", from_first(model_from_scan));
-  write_tum(directory / "odometry.tum", from_first(drifted(model_from_scan, drift)));
+  if (!std::filesystem::exists(directory / "truth.tum")) {
+    write_tum(directory / "truth.tum", from_first(model_from_scan));
+  }
+  if (!std::filesystem::exists(directory / "odometry.tum")) {
+    write_tum(directory / "odometry.tum", from_first(drifted(model_from_scan, drift)));
+  }
 }
 
 }  // namespace planum

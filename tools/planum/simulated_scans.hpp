@@ -16,7 +16,7 @@ void write_simulated_scans(const std::filesystem::path& directory, const Triangl
                            const Progress& progress = {});
 
 /// Writes truth.tum, the poses relative to the first one, and odometry.tum, the same as odometry
-/// with drift has it.
+/// with drift has it. Files that are there already stay as they are.
 void write_simulated_trajectories(const std::filesystem::path& directory,
                                   std::span<const Pose> model_from_scan, const DriftParams& drift);
 

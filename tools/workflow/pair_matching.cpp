@@ -12,8 +12,9 @@ constexpr int matching_version = 1;
 
 }  // namespace
 
-PairMatching::PairMatching(Results& results, const Settings& settings, UnitCache& units)
-    : results_(results), units_(units), icp_(settings.icp) {
+PairMatching::PairMatching(Results& results, const Settings& settings, UnitCache& units,
+                           const Progress& progress)
+    : results_(results), units_(units), icp_(settings.icp), progress_(progress) {
   icp_.pairing = pairing_of(settings);
   parameters_ = Hasher()
                     .value(matching_version)
@@ -36,7 +37,7 @@ Alignment PairMatching::align(std::size_t target, std::size_t source, const Pose
   // A pair may be matched again from another guess: the end of the name tells them apart.
   const std::string unit = pair + "-" + to_string(key).substr(0, 8);
   if (const auto bytes = units_.find(unit, key)) return unarchived<Alignment>(*bytes);
-  std::call_once(ready_, [&] { scans_ = &results_.matching_scans.get(); });
+  std::call_once(ready_, [&] { scans_ = &results_.matching_scans(progress_); });
   IcpParams params = icp_;
   params.first_gate = first_gate;
   try {

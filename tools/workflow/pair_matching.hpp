@@ -18,7 +18,8 @@ namespace planum {
 class PairMatching {
  public:
   /// The results and the units must outlive it.
-  PairMatching(Results& results, const Settings& settings, UnitCache& units);
+  PairMatching(Results& results, const Settings& settings, UnitCache& units,
+               const Progress& progress);
 
   /// `first_gate` (m) in place of that of the settings.
   Alignment align(std::size_t target, std::size_t source, const Pose& guess, double first_gate);
@@ -31,6 +32,7 @@ class PairMatching {
   Results& results_;
   UnitCache& units_;
   IcpParams icp_;
+  Progress progress_;  ///< of making scans ready
   Digest parameters_;  ///< of all that a match depends on but the scans and the guess
   std::once_flag ready_;
   const std::vector<MatchingScan>* scans_ = nullptr;

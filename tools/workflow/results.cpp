@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/core/parallel.hpp"
 #include "slam/io/atomic_file.hpp"
 #include "slam/io/input_file.hpp"
 #include "slam/io/ply.hpp"
@@ -49,13 +50,6 @@ Imported load_imported(const CacheLayout& layout) {
   return imported;
 }
 
-std::vector<MatchingScan> made_ready(const Imported& imported, const MatchingScanParams& params) {
-  std::vector<MatchingScan> scans;
-  scans.reserve(imported.scans.size());
-  for (const Scan& scan : imported.scans) scans.push_back(matching_scan(scan.cloud, params));
-  return scans;
-}
-
 }  // namespace
 
 Results::Results(const CacheLayout& layout, const MatchingScanParams& matching)
@@ -67,7 +61,20 @@ Results::Results(const CacheLayout& layout, const MatchingScanParams& matching)
       mesh(loader("mesh", [layout] { return read_ply_mesh(layout.output / "mesh.ply"); })),
       polygons(archive_loader<PolygonMap>(layout, "polygons")),
       labelled(archive_loader<Labelled>(layout, "labels")),
-      matching_scans([this, matching] { return made_ready(imported.get(), matching); }) {}
+      matching_(matching) {}
+
+const std::vector<MatchingScan>& Results::matching_scans(const Progress& progress) {
+  if (matching_scans_) return *matching_scans_;
+  const std::vector<Scan>& scans = imported.get().scans;
+  std::vector<std::optional<MatchingScan>> ready(scans.size());
+  const auto make_ready = [&](std::size_t i, std::size_t) {
+    ready[i] = matching_scan(scans[i].cloud, matching_);
+  };
+  parallel_for(scans.size(), 1, make_ready, progress);
+  matching_scans_.emplace();
+  for (auto& scan : ready) matching_scans_->push_back(std::move(*scan));
+  return *matching_scans_;
+}
 
 Digest digest_of(const Cloud& cloud) {
   return Hasher().list(cloud.points).list(cloud.intensity).result();

@@ -10,7 +10,9 @@
 #include "labeling/rooms.hpp"
 #include "meshing/polygon_map.hpp"
 #include "slam/core/cloud.hpp"
+#include "slam/core/progress.hpp"
 #include "slam/graph/pose_graph.hpp"
+#include "slam/registration/matching_scan.hpp"
 #include "slam/registration/sequence.hpp"
 #include "slam/sensor/range_limits.hpp"
 #include "tools/workflow/cache_layout.hpp"
@@ -77,7 +79,8 @@ struct Labelled {
 };
 
 /// The results of all stages of one run.
-struct Results {
+class Results {
+ public:
   Results(const CacheLayout& layout, const MatchingScanParams& matching);
 
   Held<Imported> imported;
@@ -90,7 +93,11 @@ struct Results {
   Held<Labelled> labelled;
 
   /// The imported scans made ready for matching; never stored.
-  Held<std::vector<MatchingScan>> matching_scans;
+  const std::vector<MatchingScan>& matching_scans(const Progress& progress = {});
+
+ private:
+  MatchingScanParams matching_;
+  std::optional<std::vector<MatchingScan>> matching_scans_;
 };
 
 /// Writes a result as Results will read it.

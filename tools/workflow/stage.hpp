@@ -13,7 +13,7 @@
 
 namespace planum {
 
-struct Results;
+class Results;
 
 /// What a stage works with while it runs.
 struct StageContext {

@@ -19,8 +19,13 @@ Trajectory odometry_trajectory(const Imported& imported, const World& world) {
   return trajectory;
 }
 
-TrajectoryFigures trajectory_figures(const Trajectory&, const Trajectory&) { return {}; }
-
-Pose truth_from_estimate(const Trajectory&, const Trajectory&) { return Pose::Identity(); }
+TrajectoryFigures trajectory_figures(const TrajectoryError& error) {
+  return {.ate_rmse = error.ape_translation.rmse,
+          .ate_max = error.ape_translation.max,
+          .rot_mean = radians(error.ape_rotation.mean),
+          .rot_max = radians(error.ape_rotation.max),
+          .rpe_trans = error.rpe_translation.rmse,
+          .rpe_rot = radians(error.rpe_rotation.rmse)};
+}
 
 }  // namespace planum

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "slam/core/trajectory.hpp"
+#include "slam/evaluation/trajectory_error.hpp"
 #include "tools/report/run_report.hpp"
 #include "tools/workflow/results.hpp"
 
@@ -12,10 +13,7 @@ Trajectory mapped_trajectory(const Imported& imported, const World& world);
 /// All scans where their poses had them.
 Trajectory odometry_trajectory(const Imported& imported, const World& world);
 
-/// Errors of the poses whose stamps are in the truth, after alignment (docs/evaluation.md).
-TrajectoryFigures trajectory_figures(const Trajectory& estimate, const Trajectory& truth);
-
-/// The rigid motion that brings the positions of the estimate onto those of the truth.
-Pose truth_from_estimate(const Trajectory& estimate, const Trajectory& truth);
+/// The errors that a report names.
+TrajectoryFigures trajectory_figures(const TrajectoryError& error);
 
 }  // namespace planum

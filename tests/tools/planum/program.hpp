@@ -28,7 +28,7 @@ struct Outcome {
 
 /// How to disturb a run.
 struct Disturbance {
-  std::optional<std::chrono::microseconds> signal_after;
+  std::optional<std::chrono::microseconds> signal_after = std::nullopt;
   int signal = SIGKILL;
   rlim_t max_file_bytes = RLIM_INFINITY;
 };

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "meshing/normals.hpp"
+#include "meshing/up_direction.hpp"
 #include "slam/io/frames.hpp"
 #include "slam/io/g2o.hpp"
 #include "slam/io/ply.hpp"
@@ -25,27 +26,27 @@ World unlevelled_world(const Imported& imported, const Relaxed& relaxed) {
 Cloud consistent_cloud(const Imported& imported, const World& world) {
   std::vector<Scan> scans;
   for (std::size_t i = 0; i < imported.scans.size(); ++i) {
-    scans.push_back({.id = imported.scans[i].id, .world_from_scan = world.poses[i]});
-    if (world.is_mapped[i]) scans.back().cloud = imported.scans[i].cloud;
+    const Scan& scan = imported.scans[i];
+    scans.push_back({scan.id, scan.number, world.poses[i], {}});
+    if (world.is_mapped[i]) scans.back().cloud = scan.cloud;
   }
   return merged(scans);
 }
 
 /// Turns the world about the place of the first scan, so that it stays where its pose file has it.
-void level(World& world, Cloud& cloud) {
-  struct {
-    Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-    double confidence = 0;
-  } up;
+/// False if there is no floor to go by.
+bool level(World& world, Cloud& cloud) {
+  const auto found = estimate_up(cloud.normals, {}, Eigen::Vector3d::UnitZ());
+  if (!found) return false;
   const Eigen::Vector3d pivot = world.odometry.front().translation();
-  const Eigen::Quaterniond turn =
-      Eigen::Quaterniond::FromTwoVectors(up.up, Eigen::Vector3d::UnitZ());
+  const auto turn = Eigen::Quaterniond::FromTwoVectors(found->up, Eigen::Vector3d::UnitZ());
   world.world_from_input = Eigen::Translation3d(pivot) * turn * Eigen::Translation3d(-pivot);
-  world.up_confidence = up.confidence;
+  world.up_confidence = found->confidence;
   cloud = transformed(cloud, world.world_from_input);
   for (std::vector<Pose>* poses : {&world.odometry, &world.poses}) {
     for (Pose& pose : *poses) pose = orthonormalized(world.world_from_input * pose);
   }
+  return true;
 }
 
 G2oGraph g2o_graph(const Imported& imported, const Relaxed& relaxed, const World& world) {
@@ -95,7 +96,10 @@ void work(StageContext& context) {
   Cloud cloud = consistent_cloud(imported, world);
   cloud.normals = estimate_normals(cloud, scan_origins(world), context.project.settings.normals,
                                    context.progress);
-  if (context.project.settings.level) level(world, cloud);
+  if (context.project.settings.level && !level(world, cloud)) {
+    context.record.warnings.push_back(
+        "no floor or ceiling was found, so the world is not levelled");
+  }
   write_ply(context.staging / "cloud.ply", cloud);
   write_poses(context, imported, world);
   write_result(context.result, world);
@@ -111,7 +115,7 @@ void work(StageContext& context) {
 Stage cloud_stage() {
   return {.name = "cloud",
           .version = 1,
-          .unit = "points",
+          .unit = "steps",
           .needs = {"import", "register", "relax"},
           .parameters = {"world", "cloud"},
           .input_files = {},

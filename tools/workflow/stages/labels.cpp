@@ -59,7 +59,7 @@ void work(StageContext& context) {
 Stage labels_stage() {
   return {.name = "labels",
           .version = 1,
-          .unit = "polygons",
+          .unit = "steps",
           .needs = {"cloud", "polygons"},
           .parameters = {"labels", "rooms"},
           .input_files = {},

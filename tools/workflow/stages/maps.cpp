@@ -22,7 +22,7 @@ void work(StageContext& context) {
 Stage maps_stage() {
   return {.name = "maps",
           .version = 1,
-          .unit = "files",
+          .unit = "steps",
           .needs = {"polygons", "labels"},
           .parameters = {"maps"},
           .input_files = {},

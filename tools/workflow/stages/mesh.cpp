@@ -22,7 +22,7 @@ void work(StageContext& context) {
 Stage mesh_stage() {
   return {.name = "mesh",
           .version = 1,
-          .unit = "cells",
+          .unit = "steps",
           .needs = {"cloud"},
           .parameters = {"mesh"},
           .input_files = {},

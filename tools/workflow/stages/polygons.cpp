@@ -57,7 +57,7 @@ void work(StageContext& context) {
 Stage polygons_stage() {
   return {.name = "polygons",
           .version = 1,
-          .unit = "polygons",
+          .unit = "steps",
           .needs = {"mesh"},
           .parameters = {"polygons", "mesh.voxel_m"},
           .input_files = {},

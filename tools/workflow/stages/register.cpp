@@ -32,7 +32,7 @@ SequenceMatch trusted(const std::vector<Pose>& poses, const OdometryNoise& noise
 
 SequenceMatch matched(const Imported& imported, StageContext& context) {
   const Settings& settings = context.project.settings;
-  PairMatching matching(context.results, settings, context.units);
+  PairMatching matching(context.results, settings, context.units, context.progress);
   return match_in_order(given_poses(imported), matching.matcher(), settings.sequence,
                         context.progress);
 }

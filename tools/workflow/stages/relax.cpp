@@ -39,9 +39,9 @@ std::vector<std::vector<std::size_t>> groups_of(const PoseGraph& graph) {
 
 void add_loops(PoseGraph& graph, StageContext& context) {
   const Settings& settings = context.project.settings;
-  PairMatching matching(context.results, settings, context.units);
+  PairMatching matching(context.results, settings, context.units, context.progress);
   const std::vector<Edge> loops =
-      find_loops(context.results.matching_scans.get(), graph, matching.loop_matcher(),
+      find_loops(context.results.matching_scans(context.progress), graph, matching.loop_matcher(),
                  settings.loops, context.progress);
   graph.edges.insert(graph.edges.end(), loops.begin(), loops.end());
 }
@@ -50,8 +50,8 @@ Relaxed relaxed(const PoseGraph& graph, StageContext& context) {
   const Settings& settings = context.project.settings;
   LuMiliosParams params = settings.relaxation;
   params.pairing = pairing_of(settings);
-  GraphResult result =
-      relax_lu_milios(graph, context.results.matching_scans.get(), params, context.progress);
+  GraphResult result = relax_lu_milios(graph, context.results.matching_scans(context.progress),
+                                       params, context.progress);
   return {std::move(result.graph), result.residual_before, result.residual_after,
           result.iterations,       result.converged,       {}};
 }

@@ -35,8 +35,10 @@ void evaluate(StageContext& context, RunReport& report) {
   const Trajectory truth = read_tum(resolved(context.project, context.project.settings.truth));
   const Imported& imported = context.results.imported.get();
   const World& world = context.results.world.get();
-  report.evaluation = trajectory_figures(mapped_trajectory(imported, world), truth);
-  report.odometry_evaluation = trajectory_figures(odometry_trajectory(imported, world), truth);
+  report.evaluation =
+      trajectory_figures(trajectory_error(mapped_trajectory(imported, world), truth));
+  report.odometry_evaluation =
+      trajectory_figures(trajectory_error(odometry_trajectory(imported, world), truth));
   context.record.summary +=
       fmt::format(", trajectory error {:.3f} m rmse (odometry {:.3f} m)",
                   report.evaluation->ate_rmse, report.odometry_evaluation->ate_rmse);
@@ -87,7 +89,7 @@ void work(StageContext& context) {
 Stage report_stage() {
   return {.name = "report",
           .version = 1,
-          .unit = "files",
+          .unit = "steps",
           .needs = {"import", "register", "relax", "cloud", "mesh", "polygons", "labels"},
           .parameters = {"evaluation"},
           .input_files = input_files,
