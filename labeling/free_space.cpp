@@ -38,24 +38,16 @@ CellLists faces_of_cells(const FloorGrid& grid, const std::vector<WallFace>& fac
   return CellLists(grid.size(), std::move(pairs));
 }
 
-CellMask wall_cells(const FloorGrid& grid, const std::vector<WallFace>& faces) {
-  CellMask mask(grid.size(), 0);
-  for (const WallFace& face : faces)
-    for_each_cell_between(grid, face.at(face.begin), face.at(face.end),
-                          [&](std::size_t cell) { mask[cell] = 1; });
-  return mask;
-}
-
 /// Where the ray crosses the face, if it ends far enough on the other side.
 std::optional<FaceSample> crossing(const WallFace& face, std::uint32_t index,
                                    const Eigen::Vector3d& origin, const Eigen::Vector3d& end,
-                                   double overshoot) {
+                                   double overshoot, double end_reach) {
   const double from = face.signed_distance(origin.head<2>());
   const double to = face.signed_distance(end.head<2>());
   if (from * to >= 0 || std::abs(to) < overshoot || std::abs(from) < overshoot) return std::nullopt;
   const Eigen::Vector3d at = origin + (end - origin) * (from / (from - to));
   const double along = face.tangent().dot(at.head<2>());
-  if (along < face.begin || along > face.end) return std::nullopt;
+  if (along < face.begin - end_reach || along > face.end + end_reach) return std::nullopt;
   return FaceSample{index, static_cast<float>(along), static_cast<float>(at.z())};
 }
 
@@ -75,14 +67,14 @@ struct FaceFinder {
   const FloorGrid& grid;  ///< coarse
   const std::vector<WallFace>& faces;
   const CellLists& faces_at;
-  const FreeSpaceParams& params;
+  const RayParams& params;
 
   void find_crossings(const Eigen::Vector3d& origin, const Eigen::Vector3d& end,
                       std::vector<FaceSample>& found) const {
     const auto before = static_cast<std::ptrdiff_t>(found.size());
     for_each_cell_between(grid, origin.head<2>(), end.head<2>(), [&](std::size_t cell) {
       for (const std::uint32_t f : faces_at.at(cell)) {
-        const auto sample = crossing(faces[f], f, origin, end, params.overshoot);
+        const auto sample = crossing(faces[f], f, origin, end, params.overshoot, params.end_reach);
         if (!sample) continue;
         const auto known = [&](const FaceSample& other) { return other.face == f; };
         if (std::none_of(found.begin() + before, found.end(), known)) found.push_back(*sample);
@@ -115,33 +107,52 @@ std::vector<FaceSample> joined(const std::vector<std::vector<FaceSample>>& of_bl
 
 }  // namespace
 
-FreeSpace trace_rays(const Cloud& plan, std::span<const Eigen::Vector3d> origins,
-                     const FloorGrid& grid, const std::vector<WallFace>& faces,
-                     const FreeSpaceParams& params) {
-  FreeSpace space;
-  space.free.assign(grid.size(), 0);
-  space.wall = wall_cells(grid, faces);
+CellMask free_cells(const Cloud& plan, std::span<const Eigen::Vector3d> origins,
+                    const FloorGrid& grid, const RayParams& params) {
+  CellMask free(grid.size(), 0);
+  const std::size_t step = 1 + plan.points.size() / std::max<std::size_t>(params.max_free_rays, 1);
+  parallel_for(plan.points.size(), rays_per_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = (begin + step - 1) / step * step; i < end; i += step)
+      mark_free(grid, origins[plan.scan[i]].head<2>(), plan.points[i].head<2>().cast<double>(),
+                params.end_margin, free);
+  });
+  return free;
+}
+
+CellMask wall_cells(const FloorGrid& grid, const std::vector<WallFace>& faces) {
+  CellMask mask(grid.size(), 0);
+  for (const WallFace& face : faces)
+    for_each_cell_between(grid, face.at(face.begin), face.at(face.end),
+                          [&](std::size_t cell) { mask[cell] = 1; });
+  return mask;
+}
+
+FaceSamples sample_faces(const Cloud& plan, std::span<const Eigen::Vector3d> origins,
+                         const FloorGrid& grid, const std::vector<WallFace>& faces,
+                         const RayParams& params) {
   const FloorGrid wide = coarse(grid);
   const CellLists faces_at = faces_of_cells(wide, faces, params.end_reach);
   const FaceFinder finder{wide, faces, faces_at, params};
   const std::size_t count = plan.points.size();
-  const std::size_t mark_step = 1 + count / std::max<std::size_t>(params.max_free_rays, 1);
   const std::size_t blocks = (count + rays_per_block - 1) / rays_per_block;
   std::vector<std::vector<FaceSample>> crossings(blocks), hits(blocks);
   parallel_for(count, rays_per_block, [&](std::size_t begin, std::size_t end) {
     const std::size_t block = begin / rays_per_block;
     for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector3d& origin = origins[plan.scan[i]];
       const Eigen::Vector3d point = plan.points[i].cast<double>();
-      finder.find_crossings(origin, point, crossings[block]);
+      finder.find_crossings(origins[plan.scan[i]], point, crossings[block]);
       finder.find_hits(point, hits[block]);
-      if (i % mark_step == 0)
-        mark_free(grid, origin.head<2>(), point.head<2>(), params.end_margin, space.free);
     }
   });
-  space.crossings = joined(crossings);
-  space.hits = joined(hits);
-  return space;
+  return {joined(crossings), joined(hits)};
+}
+
+std::span<const FaceSample> samples_of_face(const std::vector<FaceSample>& samples,
+                                            std::size_t face) {
+  const auto before = [](const FaceSample& s, std::size_t f) { return s.face < f; };
+  const auto first = std::lower_bound(samples.begin(), samples.end(), face, before);
+  const auto last = std::lower_bound(first, samples.end(), face + 1, before);
+  return {first, last};
 }
 
 }  // namespace planum

@@ -48,23 +48,26 @@ double refined_edge(const OpeningRectangle& rough, const OpeningEvidence& eviden
     return values;
   };
   const std::vector<double> open = near(evidence.crossings), wall = near(evidence.hits);
-  const double parted = edge.inwards > 0 ? parting_value(wall, open, guess, params.window)
-                                         : parting_value(open, wall, guess, params.window);
+  const EdgeInterval parted = edge.inwards > 0 ? parting_interval(wall, open, guess, params.window)
+                                               : parting_interval(open, wall, guess, params.window);
   std::vector<double> reveal;
   for (const OpeningSample& s : evidence.reveal) {
     const double facing = edge.inwards * (edge.vertical ? s.normal_u : s.normal_z);
-    if (beside(s) && facing > 0.6 && std::abs(value(s) - parted) < params.window)
+    if (beside(s) && facing > 0.6 && value(s) > parted.low - params.window &&
+        value(s) < parted.high + params.window)
       reveal.push_back(value(s));
   }
   const auto peak =
       centre_of_peak(std::move(reveal), params.reveal_spread, params.min_reveal_points);
-  return peak && std::abs(*peak - parted) < params.max_disagreement ? *peak : parted;
+  const bool agrees = peak && *peak > parted.low - params.max_disagreement &&
+                      *peak < parted.high + params.max_disagreement;
+  return agrees ? *peak : parted.middle();
 }
 
 }  // namespace
 
-double parting_value(std::vector<double> below, std::vector<double> above, double guess,
-                     double window) {
+EdgeInterval parting_interval(std::vector<double> below, std::vector<double> above, double guess,
+                              double window) {
   std::sort(below.begin(), below.end());
   std::sort(above.begin(), above.end());
   std::vector<double> breaks{guess - window, guess + window};
@@ -77,15 +80,15 @@ double parting_value(std::vector<double> below, std::vector<double> above, doubl
            (std::lower_bound(above.begin(), above.end(), value) - above.begin());
   };
   std::ptrdiff_t least = std::numeric_limits<std::ptrdiff_t>::max();
-  double best_width = -1, best = guess;
+  double best_width = -1;
+  EdgeInterval best{guess, guess};
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
-    const double middle = 0.5 * (breaks[i] + breaks[i + 1]);
     const double width = breaks[i + 1] - breaks[i];
-    const std::ptrdiff_t wrong = wrong_at(middle);
+    const std::ptrdiff_t wrong = wrong_at(0.5 * (breaks[i] + breaks[i + 1]));
     if (wrong < least || (wrong == least && width > best_width)) {
       least = wrong;
       best_width = width;
-      best = middle;
+      best = {breaks[i], breaks[i + 1]};
     }
   }
   return best;

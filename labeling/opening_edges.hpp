@@ -27,15 +27,22 @@ struct OpeningEvidence {
 
 struct OpeningEdgeParams {
   double window = 0.15;          ///< m around a rough edge where the fine one is looked for
-  double reveal_spread = 0.025;  ///< m, points of a jamb lie this near their median
-  int min_reveal_points = 20;
-  double max_disagreement = 0.05;  ///< m between jamb and faces; else the faces count
+  double reveal_spread = 0.025;  ///< m, points of a jamb lie this near their mean
+  int min_reveal_points = 12;
+  double max_disagreement =
+      0.03;  ///< m of a jamb outside of what the faces leave open; else they count
 };
 
-/// The value that parts `below` from `above` with the fewest on the wrong side, within `window` of
-/// `guess`; in the middle of the widest gap where several are as good.
-double parting_value(std::vector<double> below, std::vector<double> above, double guess,
-                     double window);
+/// Between which values an edge lies.
+struct EdgeInterval {
+  double low = 0, high = 0;
+  double middle() const { return 0.5 * (low + high); }
+};
+
+/// Where `below` and `above` are parted with the fewest values on the wrong side, within `window`
+/// of `guess`: the widest gap where several are as good.
+EdgeInterval parting_interval(std::vector<double> below, std::vector<double> above, double guess,
+                              double window);
 
 /// The edges of an opening from points on its jambs and its lintel, and where there are too few,
 /// from where the rays through the wall end and the points on it begin. The bottom is refined where

@@ -158,8 +158,8 @@ class FaceSearch {
     opening.floor = floor_;
     opening.ceiling = ceiling_;
     opening.parapet = static_cast<double>(below) / columns;
-    opening.framed = left >= params_.min_frame * rows && right >= params_.min_frame * rows &&
-                     above >= params_.min_frame * columns;
+    opening.frame = {left >= params_.min_frame * rows, right >= params_.min_frame * rows,
+                     above >= params_.min_frame * columns};
     return opening;
   }
 
@@ -171,16 +171,8 @@ class FaceSearch {
 
 }  // namespace
 
-std::span<const FaceSample> samples_of_face(const std::vector<FaceSample>& samples,
-                                            std::size_t face) {
-  const auto before = [](const FaceSample& s, std::size_t f) { return s.face < f; };
-  const auto first = std::lower_bound(samples.begin(), samples.end(), face, before);
-  const auto last = std::lower_bound(first, samples.end(), face + 1, before);
-  return {first, last};
-}
-
 std::vector<FaceOpening> find_face_openings(const std::vector<WallFace>& faces,
-                                            const FreeSpace& space, const FloorGrid& grid,
+                                            const FaceSamples& samples, const FloorGrid& grid,
                                             const LevelSurface& floor, const LevelSurface& ceiling,
                                             const OpeningSearchParams& params) {
   std::vector<FaceOpening> found;
@@ -188,7 +180,7 @@ std::vector<FaceOpening> find_face_openings(const std::vector<WallFace>& faces,
     const double top = height_before(faces[f], grid, ceiling, 0);
     const double bottom = height_before(faces[f], grid, floor, top - 2.5);
     FaceSearch(faces[f], f, bottom, top, params)
-        .run(samples_of_face(space.hits, f), samples_of_face(space.crossings, f), found);
+        .run(samples_of_face(samples.hits, f), samples_of_face(samples.crossings, f), found);
   }
   return found;
 }

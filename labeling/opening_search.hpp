@@ -9,6 +9,12 @@
 
 namespace planum {
 
+/// Where a wall was seen around an opening; left is at smaller values along the tangent.
+struct OpeningFrame {
+  bool left = false, right = false, above = false;
+  bool complete() const { return left && right && above; }
+};
+
 /// A hole in a wall face as an image of the face shows it: limits to about a cell.
 struct FaceOpening {
   std::size_t face = 0;
@@ -17,7 +23,7 @@ struct FaceOpening {
   double floor = 0;            ///< m, z of the floor in front of the face
   double ceiling = 0;          ///< m, z of the ceiling in front of the face
   double parapet = 0;          ///< share of the columns that show a wall below
-  bool framed = false;         ///< wall on the left, on the right and above
+  OpeningFrame frame;
 };
 
 struct OpeningSearchParams {
@@ -34,12 +40,8 @@ struct OpeningSearchParams {
 /// Reconstruction of Interior Wall Surfaces under Occlusion and Clutter, 3DIMPVT 2011, look for
 /// openings in an image of the wall in the same way.
 std::vector<FaceOpening> find_face_openings(const std::vector<WallFace>& faces,
-                                            const FreeSpace& space, const FloorGrid& grid,
+                                            const FaceSamples& samples, const FloorGrid& grid,
                                             const LevelSurface& floor, const LevelSurface& ceiling,
                                             const OpeningSearchParams& params = {});
-
-/// The samples of one face; `samples` are sorted by face.
-std::span<const FaceSample> samples_of_face(const std::vector<FaceSample>& samples,
-                                            std::size_t face);
 
 }  // namespace planum

@@ -1,131 +1,13 @@
 #include "labeling/openings.hpp"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 
-#include "labeling/cell_lists.hpp"
+#include "labeling/hole_evidence.hpp"
+#include "labeling/wall_hole.hpp"
 
 namespace planum {
 namespace {
-
-/// A hole in a wall with one or two faces. u runs along the tangent of the first face from
-/// `centre`, which lies on that face; depth runs into the wall.
-struct WallHole {
-  FaceOpening front;
-  std::optional<FaceOpening> back;
-  Eigen::Vector2d centre, tangent, inwards;
-  double thickness = 0;  ///< m; 0 where the back is not known
-  OpeningRectangle rectangle;
-  bool has_sill = false;
-  std::array<std::int32_t, 2> regions{-1, -1};  ///< in front and behind, or -1
-
-  double u_of(const Eigen::Vector2d& p) const { return tangent.dot(p - centre); }
-  double depth_of(const Eigen::Vector2d& p) const { return inwards.dot(p - centre); }
-};
-
-/// How much of the shorter of two intervals they share.
-double overlap(double a0, double a1, double b0, double b1) {
-  return (std::min(a1, b1) - std::max(a0, b0)) / std::min(a1 - a0, b1 - b0);
-}
-
-/// The same hole seen from the other side of the wall?
-std::optional<double> thickness_between(const std::vector<WallFace>& faces, const FaceOpening& a,
-                                        const FaceOpening& b, double max_thickness) {
-  const WallFace& front = faces[a.face];
-  const WallFace& back = faces[b.face];
-  if (front.normal.dot(back.normal) > -0.98) return std::nullopt;
-  const double thickness = -front.signed_distance(back.at(0.5 * (b.begin + b.end)));
-  if (thickness < 0.01 || thickness > max_thickness) return std::nullopt;
-  const double b0 = front.tangent().dot(back.at(b.end));
-  const double b1 = front.tangent().dot(back.at(b.begin));
-  if (overlap(a.begin, a.end, b0, b1) < 0.6 || overlap(a.bottom, a.top, b.bottom, b.top) < 0.6)
-    return std::nullopt;
-  return thickness;
-}
-
-std::vector<WallHole> paired(const std::vector<WallFace>& faces,
-                             const std::vector<FaceOpening>& holes, double max_thickness) {
-  std::vector<WallHole> result;
-  std::vector<std::uint8_t> used(holes.size(), 0);
-  for (std::size_t i = 0; i < holes.size(); ++i) {
-    if (used[i]) continue;
-    WallHole hole;
-    hole.front = holes[i];
-    std::size_t partner = holes.size();
-    for (std::size_t k = i + 1; k < holes.size(); ++k) {
-      if (used[k]) continue;
-      const auto thickness = thickness_between(faces, holes[i], holes[k], max_thickness);
-      if (!thickness || (partner < holes.size() && *thickness >= hole.thickness)) continue;
-      partner = k;
-      hole.thickness = *thickness;
-    }
-    if (partner < holes.size()) {
-      used[partner] = 1;
-      hole.back = holes[partner];
-    }
-    const WallFace& face = faces[hole.front.face];
-    hole.centre = face.at(0.5 * (holes[i].begin + holes[i].end));
-    hole.tangent = face.tangent();
-    hole.inwards = -face.normal;
-    const double half = 0.5 * (holes[i].end - holes[i].begin);
-    hole.rectangle = {-half, half, holes[i].bottom, holes[i].top};
-    result.push_back(hole);
-  }
-  return result;
-}
-
-/// Samples of one face around the hole, in its frame.
-void add_samples(const WallHole& hole, const WallFace& face, std::span<const FaceSample> samples,
-                 std::vector<OpeningSample>& to) {
-  constexpr double reach = 0.5;  // m
-  for (const FaceSample& s : samples) {
-    const double u = hole.u_of(face.at(double{s.along}));
-    if (u > hole.rectangle.left - reach && u < hole.rectangle.right + reach)
-      to.push_back({u, double{s.height}, 0, 0});
-  }
-}
-
-std::vector<OpeningEvidence> evidence_of(const Cloud& plan, const FloorGrid& grid,
-                                         const std::vector<WallFace>& faces, const FreeSpace& space,
-                                         const std::vector<WallHole>& holes) {
-  constexpr double reach = 0.2, inset = 0.02, unknown_thickness = 0.12;  // m
-  std::vector<OpeningEvidence> evidence(holes.size());
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> cells;
-  for (std::size_t h = 0; h < holes.size(); ++h) {
-    const WallHole& hole = holes[h];
-    for (const auto& side : {std::optional(hole.front), hole.back}) {
-      if (!side) continue;
-      const WallFace& face = faces[side->face];
-      add_samples(hole, face, samples_of_face(space.hits, side->face), evidence[h].hits);
-      add_samples(hole, face, samples_of_face(space.crossings, side->face), evidence[h].crossings);
-    }
-    const double depth = hole.back ? hole.thickness : unknown_thickness;
-    for (double d = 0; d <= depth + grid.cell; d += 0.5 * grid.cell) {
-      const Eigen::Vector2d middle = hole.centre + d * hole.inwards;
-      for_each_cell_between(
-          grid, middle + (hole.rectangle.left - reach) * hole.tangent,
-          middle + (hole.rectangle.right + reach) * hole.tangent, [&](std::size_t cell) {
-            cells.emplace_back(static_cast<std::uint32_t>(cell), static_cast<std::uint32_t>(h));
-          });
-    }
-  }
-  const CellLists holes_at(grid.size(), std::move(cells));
-  for (std::size_t i = 0; i < plan.points.size(); ++i) {
-    const Eigen::Vector2d p = plan.points[i].head<2>().cast<double>();
-    const std::ptrdiff_t cell = grid.find(p);
-    if (cell < 0) continue;
-    for (const std::uint32_t h : holes_at.at(static_cast<std::size_t>(cell))) {
-      const double depth = holes[h].depth_of(p);
-      const double end = holes[h].back ? holes[h].thickness - inset : unknown_thickness;
-      if (depth < inset || depth > end) continue;
-      const Eigen::Vector3d n = plan.normals[i].cast<double>();
-      evidence[h].reveal.push_back(
-          {holes[h].u_of(p), double{plan.points[i].z()}, holes[h].tangent.dot(n.head<2>()), n.z()});
-    }
-  }
-  return evidence;
-}
 
 /// The regions on both sides: the first that lies before or behind the hole.
 void find_regions(WallHole& hole, const FloorGrid& grid, const RoomRegions& regions) {
@@ -177,8 +59,7 @@ bool joins_regions(const WallHole& hole, const std::vector<WallFace>& faces,
 
 /// What the hole is, or nothing if it is too small for what it would be.
 std::optional<OpeningKind> kind_of(const WallHole& hole, const OpeningParams& params) {
-  const bool framed = hole.front.framed || (hole.back && hole.back->framed);
-  if (!framed) return std::nullopt;
+  if (!hole.frame.complete()) return std::nullopt;
   if (hole.has_sill) return OpeningKind::window;
   if (hole.rectangle.width() < params.min_door_width ||
       hole.rectangle.height() < params.min_door_height)
@@ -219,14 +100,15 @@ const char* name(OpeningKind kind) {
 
 OpeningSet find_openings(const Cloud& plan, const FloorGrid& grid,
                          const std::vector<WallFace>& faces,
-                         const std::vector<RegionFace>& region_faces, const FreeSpace& space,
+                         const std::vector<RegionFace>& region_faces, const FaceSamples& samples,
                          const std::vector<FaceOpening>& holes, const RoomRegions& regions,
                          const OpeningParams& params) {
   OpeningSet result;
-  std::vector<WallHole> walls = paired(faces, holes, params.max_thickness);
-  const std::vector<OpeningEvidence> evidence = evidence_of(plan, grid, faces, space, walls);
+  std::vector<WallHole> walls = wall_holes(faces, holes, params.max_thickness);
+  const auto points = points_in_walls(plan, grid, walls, params.max_thickness);
   for (std::size_t h = 0; h < walls.size(); ++h) {
     WallHole& hole = walls[h];
+    if (!hole.back) hole.thickness = thickness_behind(hole, points[h], params.max_thickness);
     find_regions(hole, grid, regions);
     if (joins_regions(hole, faces, region_faces, params)) {
       result.joined_regions.emplace_back(std::minmax(static_cast<std::size_t>(hole.regions[0]),
@@ -236,8 +118,15 @@ OpeningSet find_openings(const Cloud& plan, const FloorGrid& grid,
     const double sill = hole.rectangle.bottom - hole.front.floor;
     hole.has_sill =
         sill > params.max_unseen_sill || (sill > params.min_sill && hole.front.parapet > 0.1);
-    hole.rectangle = refined(hole.rectangle, evidence[h], hole.has_sill, params.edges);
+    const OpeningEvidence evidence = evidence_of(hole, faces, samples, points[h]);
+    hole.rectangle = refined(hole.rectangle, evidence, hole.has_sill, params.edges);
+    const OpeningFrame reveals = frame_of_reveals(hole.rectangle, evidence.reveal);
+    hole.frame.left = hole.frame.left || reveals.left;
+    hole.frame.right = hole.frame.right || reveals.right;
+    hole.frame.above = hole.frame.above || reveals.above;
     if (!hole.has_sill) hole.rectangle.bottom = hole.front.floor;
+    if (hole.thickness <= 0)
+      hole.thickness = thickness_of_reveals(hole.rectangle, points[h], params.max_thickness);
     if (const auto kind = kind_of(hole, params); kind && hole.regions[0] + hole.regions[1] > -2)
       result.openings.push_back(described(hole, *kind));
   }

@@ -8,7 +8,7 @@
 
 #include "labeling/opening_edges.hpp"
 #include "labeling/opening_search.hpp"
-#include "labeling/room_outline.hpp"
+#include "labeling/region_faces.hpp"
 #include "labeling/room_regions.hpp"
 #include "slam/core/cloud.hpp"
 
@@ -58,7 +58,7 @@ struct OpeningSet {
 /// Pairs the holes found from both sides of a wall, measures them and tells what they are.
 OpeningSet find_openings(const Cloud& plan, const FloorGrid& grid,
                          const std::vector<WallFace>& faces,
-                         const std::vector<RegionFace>& region_faces, const FreeSpace& space,
+                         const std::vector<RegionFace>& region_faces, const FaceSamples& samples,
                          const std::vector<FaceOpening>& holes, const RoomRegions& regions,
                          const OpeningParams& params = {});
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "labeling/room_outline.hpp"
+#include "labeling/plan_ring.hpp"
 #include "slam/core/parallel.hpp"
 
 namespace planum {

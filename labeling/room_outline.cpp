@@ -1,279 +1,161 @@
 #include "labeling/room_outline.hpp"
 
 #include <algorithm>
-#include <array>
-#include <optional>
+#include <cmath>
+
+#include "labeling/border_runs.hpp"
+#include "labeling/grid_border.hpp"
+#include "labeling/grid_morphology.hpp"
+#include "labeling/plan_ring.hpp"
 
 namespace planum {
 namespace {
 
-constexpr double snap_distance = 0.20;  // m between the border of the cells and a face
-constexpr double short_run = 0.30;      // m, interruptions of a face that are ignored
-constexpr double tolerance = 0.08;      // m, of the border where no face was seen
-
-/// Corners of cells along the border of a region, which lies to the left.
-std::vector<Eigen::Vector2i> border_corners(const FloorGrid& grid, const RoomRegions& regions,
-                                            std::size_t region) {
-  const auto inside = [&](int x, int y) {
-    return grid.contains(x, y) &&
-           regions.of_cell[grid.index(x, y)] == static_cast<std::int32_t>(region);
-  };
-  const auto first =
-      std::find(regions.of_cell.begin(), regions.of_cell.end(), static_cast<std::int32_t>(region));
-  if (first == regions.of_cell.end()) return {};
-  const auto seed = static_cast<std::size_t>(first - regions.of_cell.begin());
-  const std::array<Eigen::Vector2i, 4> step{Eigen::Vector2i(1, 0), Eigen::Vector2i(0, 1),
-                                            Eigen::Vector2i(-1, 0), Eigen::Vector2i(0, -1)};
-  // Cells ahead of a corner, to the left and to the right of each direction.
-  const std::array<Eigen::Vector2i, 4> left{Eigen::Vector2i(0, 0), Eigen::Vector2i(-1, 0),
-                                            Eigen::Vector2i(-1, -1), Eigen::Vector2i(0, -1)};
-  const std::array<Eigen::Vector2i, 4> right{Eigen::Vector2i(0, -1), Eigen::Vector2i(0, 0),
-                                             Eigen::Vector2i(-1, 0), Eigen::Vector2i(-1, -1)};
-  const Eigen::Vector2i start(grid.column(seed), grid.row(seed));
-  std::vector<Eigen::Vector2i> corners;
-  Eigen::Vector2i at = start;
-  std::size_t direction = 0;  // below the first cell of the lowest row: the region is above
-  do {
-    corners.push_back(at);
-    at += step[direction];
-    const Eigen::Vector2i l = at + left[direction], r = at + right[direction];
-    if (!inside(l.x(), l.y()))
-      direction = (direction + 1) % 4;
-    else if (inside(r.x(), r.y()))
-      direction = (direction + 3) % 4;
-  } while (at != start || direction != 0);
-  return corners;
-}
-
-/// A stretch of the border that follows one face (or none: -1).
-struct Run {
-  int face = -1;
-  std::size_t first = 0, last = 0;  ///< corners
-  double length = 0;                ///< m
-};
-
-class OutlineBuilder {
+/// Decides which stretches without a face are only unseen parts of a room.
+class Completion {
  public:
-  OutlineBuilder(const FloorGrid& grid, const std::vector<RegionFace>& own_faces,
-                 const std::vector<WallFace>& faces, std::vector<Eigen::Vector2i> corners)
-      : grid_(grid), own_faces_(own_faces), faces_(faces), corners_(std::move(corners)) {}
+  Completion(const FloorGrid& grid, const RoomRegions& regions, std::int32_t region,
+             const CellMask& wall, const BorderRuns& border, double region_area,
+             const RoomOutlineParams& params)
+      : grid_(grid),
+        regions_(regions),
+        region_(region),
+        wall_(wall),
+        border_(border),
+        region_area_(region_area),
+        params_(params) {}
 
-  std::vector<Eigen::Vector2d> run() {
-    make_runs();
-    merge_short_runs();
-    std::vector<Eigen::Vector2d> ring;
-    for (std::size_t k = 0; k < runs_.size(); ++k) {
-      const Run& run = runs_[k];
-      const Run& next = runs_[(k + 1) % runs_.size()];
-      if (run.face < 0) add_free_corners(run, ring);
-      add_joint(run, next, ring);
-    }
-    return ring;
+  bool may_go(const BorderRun& before, const BorderRun& run, const BorderRun& after) const {
+    if (run.face) return run.length <= 1.5 * grid_.cell;
+    if (run.length <= params_.short_gap) return true;
+    Eigen::Vector2d meeting;
+    return faces_meet(*before.face, *after.face, meeting)
+               ? completes_corner(before, run, after, meeting)
+               : bridges_gap(*before.face, run, *after.face);
   }
 
  private:
-  Eigen::Vector2d corner(std::size_t i) const {
-    return corners_[i % corners_.size()].cast<double>() * grid_.cell;
+  std::vector<Eigen::Vector2d> corners_of(const BorderRun& run) const {
+    std::vector<Eigen::Vector2d> ring;
+    for (std::size_t i = run.first; i <= run.last; ++i) ring.push_back(border_.corner(i));
+    return ring;
   }
 
-  const WallFace& face_of(const Run& run) const {
-    return faces_[own_faces_[static_cast<std::size_t>(run.face)].face];
+  /// The wall goes on to the corner, and then along the next wall: no way back.
+  bool completes_corner(const BorderRun& before, const BorderRun& run, const BorderRun& after,
+                        const Eigen::Vector2d& meeting) const {
+    const auto onwards = [](const WallFace& face) { return Eigen::Vector2d(-face.tangent()); };
+    const double slack = 3 * grid_.cell;
+    if ((meeting - border_.corner(run.first)).dot(onwards(*before.face)) < -slack ||
+        (border_.corner(run.last) - meeting).dot(onwards(*after.face)) < -slack)
+      return false;
+    std::vector<Eigen::Vector2d> ring = corners_of(run);
+    ring.push_back(meeting);
+    return std::abs(ring_area(ring)) < params_.max_completion * region_area_ &&
+           unseen(ring, *before.face, *after.face);
   }
 
-  /// The own face that the border follows from corner i to the next, or -1.
-  int face_of_edge(std::size_t i) const {
-    const Eigen::Vector2d a = corner(i), b = corner(i + 1);
-    const Eigen::Vector2d middle = 0.5 * (a + b);
-    const Eigen::Vector2d outwards(b.y() - a.y(), a.x() - b.x());  // length: one cell
-    int best = -1;
-    double best_distance = snap_distance;
-    for (std::size_t f = 0; f < own_faces_.size(); ++f) {
-      const WallFace& face = faces_[own_faces_[f].face];
-      const double along = face.tangent().dot(middle);
-      const double distance = std::abs(face.signed_distance(middle));
-      if (outwards.dot(face.normal) < -0.3 * grid_.cell && distance < best_distance &&
-          along > own_faces_[f].begin - 0.15 && along < own_faces_[f].end + 0.15) {
-        best = static_cast<int>(f);
-        best_distance = distance;
-      }
-    }
-    return best;
+  /// Both stretches lie on one plane, and between them is a doorway or something unseen.
+  bool bridges_gap(const WallFace& before, const BorderRun& run, const WallFace& after) const {
+    const Eigen::Vector2d from = border_.corner(run.first), to = border_.corner(run.last);
+    if (std::abs(before.signed_distance(to) - after.signed_distance(to)) > 0.08) return false;
+    std::vector<Eigen::Vector2d> ring = corners_of(run);
+    for (const Eigen::Vector2d& p : ring)
+      if (before.signed_distance(p) < -params_.max_recess) return false;
+    ring.push_back(to - after.signed_distance(to) * after.normal);
+    ring.push_back(from - before.signed_distance(from) * before.normal);
+    return unseen(ring, before, after);
   }
 
-  void make_runs() {
-    for (std::size_t i = 0; i < corners_.size(); ++i) {
-      const int face = face_of_edge(i);
-      if (runs_.empty() || runs_.back().face != face) runs_.push_back({face, i, i + 1, 0});
-      runs_.back().last = i + 1;
-      runs_.back().length += grid_.cell;
-    }
-    join_ends();
-  }
-
-  /// The last run goes on in the first where both follow the same face.
-  void join_ends() {
-    if (runs_.size() < 2 || runs_.front().face != runs_.back().face) return;
-    runs_.back().last = runs_.front().last + corners_.size();
-    runs_.back().length += runs_.front().length;
-    runs_.erase(runs_.begin());
-  }
-
-  /// Short runs without a face between two with one vanish; neighbours with the same face become
-  /// one.
-  void merge_short_runs() {
-    for (std::size_t k = 0; k < runs_.size() && runs_.size() > 3;) {
-      const std::size_t before = (k + runs_.size() - 1) % runs_.size();
-      const std::size_t after = (k + 1) % runs_.size();
-      const bool between_faces = runs_[before].face >= 0 && runs_[after].face >= 0;
-      const double limit = runs_[k].face < 0 ? short_run : 1.5 * grid_.cell;
-      if (between_faces && runs_[k].length <= limit) {
-        runs_.erase(runs_.begin() + static_cast<std::ptrdiff_t>(k));
-        k = k > 1 ? k - 2 : 0;
-        merge_equal_neighbours();
-      } else {
-        ++k;
-      }
-    }
-  }
-
-  void merge_equal_neighbours() {
-    for (std::size_t k = 0; k + 1 < runs_.size();) {
-      if (runs_[k].face != runs_[k + 1].face) {
-        ++k;
-        continue;
-      }
-      runs_[k].last = runs_[k + 1].last;
-      runs_[k].length += runs_[k + 1].length;
-      runs_.erase(runs_.begin() + static_cast<std::ptrdiff_t>(k) + 1);
-    }
-    join_ends();
-  }
-
-  Eigen::Vector2d projected(const Run& run, const Eigen::Vector2d& p) const {
-    if (run.face < 0) return p;
-    const WallFace& face = face_of(run);
-    return p - face.signed_distance(p) * face.normal;
-  }
-
-  /// Where two runs meet: the corner of two faces, else a step from one to the other.
-  void add_joint(const Run& run, const Run& next, std::vector<Eigen::Vector2d>& ring) const {
-    const Eigen::Vector2d end = corner(run.last), begin = corner(next.first);
-    if (run.face >= 0 && next.face >= 0) {
-      const WallFace& a = face_of(run);
-      const WallFace& b = face_of(next);
-      Eigen::Matrix2d normals;
-      normals << a.normal.transpose(), b.normal.transpose();
-      if (std::abs(normals.determinant()) > 0.2) {
-        const Eigen::Vector2d meeting = normals.inverse() * Eigen::Vector2d(a.offset, b.offset);
-        if ((meeting - 0.5 * (begin + end)).norm() < 2 * snap_distance + short_run) {
-          ring.push_back(meeting);
-          return;
-        }
-      }
-    }
-    ring.push_back(projected(run, end));
-    ring.push_back(projected(next, begin));
-  }
-
-  /// The border of cells between both ends of a run, simplified (Douglas & Peucker 1973).
-  void add_free_corners(const Run& run, std::vector<Eigen::Vector2d>& ring) const {
-    std::vector<Eigen::Vector2d> kept;
-    simplify(run.first, run.last, kept);
-    ring.insert(ring.end(), kept.begin(), kept.end());
-  }
-
-  void simplify(std::size_t first, std::size_t last, std::vector<Eigen::Vector2d>& kept) const {
-    const Eigen::Vector2d a = corner(first), b = corner(last);
-    const Eigen::Vector2d direction =
-        (b - a).norm() > 1e-9 ? Eigen::Vector2d((b - a).normalized()) : Eigen::Vector2d::Zero();
-    double farthest = 0;
-    std::size_t at = first;
-    for (std::size_t i = first + 1; i < last; ++i) {
-      const Eigen::Vector2d d = corner(i) - a;
-      const double distance = (d - direction.dot(d) * direction).norm();
-      if (distance > farthest) {
-        farthest = distance;
-        at = i;
-      }
-    }
-    if (farthest <= tolerance) return;
-    simplify(first, at, kept);
-    kept.push_back(corner(at));
-    simplify(at, last, kept);
+  /// No other region and no other wall inside the ring?
+  bool unseen(const std::vector<Eigen::Vector2d>& ring, const WallFace& a,
+              const WallFace& b) const {
+    const double near = 3 * grid_.cell;
+    std::size_t cells = 0, other_region = 0, other_wall = 0;
+    for_each_cell_inside(grid_, ring, [&](std::size_t cell) {
+      ++cells;
+      const Eigen::Vector2d p = grid_.centre(cell);
+      const bool beside =
+          std::abs(a.signed_distance(p)) < near || std::abs(b.signed_distance(p)) < near;
+      const std::int32_t region = regions_.of_cell[cell];
+      if (region >= 0 && region != region_ && !beside) ++other_region;
+      if (wall_[cell] && !beside) ++other_wall;
+    });
+    return 50 * other_region <= cells && other_wall <= 5;
   }
 
   const FloorGrid& grid_;
-  const std::vector<RegionFace>& own_faces_;
-  const std::vector<WallFace>& faces_;
-  std::vector<Eigen::Vector2i> corners_;
-  std::vector<Run> runs_;
+  const RoomRegions& regions_;
+  std::int32_t region_;
+  const CellMask& wall_;
+  const BorderRuns& border_;
+  double region_area_;
+  const RoomOutlineParams& params_;
 };
 
-/// The region in front of a place on a face, or -1.
-std::int32_t region_before(const FloorGrid& grid, const RoomRegions& regions, const WallFace& face,
-                           double along) {
-  for (const double distance : {0.08, 0.13, 0.18, 0.25}) {
-    const std::ptrdiff_t cell = grid.find(face.at(along) + distance * face.normal);
-    if (cell < 0) return -1;
-    const std::int32_t region = regions.of_cell[static_cast<std::size_t>(cell)];
-    if (region >= 0) return region;
+/// What the region encloses without being part of it and is bounded by faces: pillars, cores. What
+/// was only not seen is no hole.
+std::vector<std::vector<Eigen::Vector2d>> holes_of(const FloorGrid& grid,
+                                                   const RoomRegions& regions, std::int32_t region,
+                                                   const std::vector<RegionFace>& own_faces,
+                                                   const std::vector<WallFace>& faces,
+                                                   double short_gap) {
+  constexpr double min_face_share = 0.5, min_area = 0.02;
+  CellMask outside(grid.size());
+  for (std::size_t i = 0; i < grid.size(); ++i) outside[i] = regions.of_cell[i] != region;
+  const CellComponents parts = connected_components(outside, grid.columns, grid.rows);
+  std::vector<std::uint8_t> enclosed(parts.sizes.size(), 1);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const int column = grid.column(i), row = grid.row(i);
+    const bool at_edge =
+        column == 0 || row == 0 || column + 1 == grid.columns || row + 1 == grid.rows;
+    if (at_edge && parts.of_cell[i] >= 0) enclosed[static_cast<std::size_t>(parts.of_cell[i])] = 0;
   }
-  return -1;
+  std::vector<std::vector<Eigen::Vector2d>> holes;
+  for (std::size_t p = 0; p < enclosed.size(); ++p) {
+    if (!enclosed[p] || static_cast<double>(parts.sizes[p]) * grid.cell * grid.cell < min_area)
+      continue;
+    BorderRuns border(grid, own_faces, faces,
+                      border_corners(grid, parts.of_cell, static_cast<std::int32_t>(p)),
+                      BorderSide::around_pillar);
+    if (border.face_share() < min_face_share) continue;
+    border.drop([&](const BorderRun&, const BorderRun& run, const BorderRun&) {
+      return run.length <= (run.face ? 1.5 * grid.cell : short_gap);
+    });
+    std::vector<Eigen::Vector2d> ring = border.ring();
+    if (ring_area(ring) > 0) holes.push_back(std::move(ring));
+  }
+  return holes;
 }
 
 }  // namespace
 
-std::vector<RegionFace> faces_of_regions(const FloorGrid& grid, const RoomRegions& regions,
-                                         const std::vector<WallFace>& faces) {
-  std::vector<RegionFace> result;
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    const double step = 0.5 * grid.cell;
-    std::int32_t current = -1;
-    for (double along = faces[f].begin; along <= faces[f].end; along += step) {
-      const std::int32_t region = region_before(grid, regions, faces[f], along);
-      if (region >= 0 && region == current) {
-        result.back().end = along;
-      } else if (region >= 0) {
-        result.push_back({static_cast<std::size_t>(region), f, along, along});
-        current = region;
-      }
-    }
+RoomOutline region_outline(const FloorGrid& grid, const RoomRegions& regions, std::size_t region,
+                           const std::vector<RegionFace>& own_faces,
+                           const std::vector<WallFace>& faces, const CellMask& wall,
+                           const RoomOutlineParams& params) {
+  RoomOutline outline;
+  const auto label = static_cast<std::int32_t>(region);
+  std::vector<Eigen::Vector2i> corners = border_corners(grid, regions.of_cell, label);
+  if (corners.empty()) return outline;
+  std::vector<Eigen::Vector2d> cells;
+  for (const Eigen::Vector2i& c : corners) cells.push_back(c.cast<double>() * grid.cell);
+  const double cell_area = ring_area(cells);
+  BorderRuns border(grid, own_faces, faces, std::move(corners), BorderSide::around_room);
+  const Completion completion(grid, regions, label, wall, border, cell_area, params);
+  border.drop([&](const BorderRun& before, const BorderRun& run, const BorderRun& after) {
+    return completion.may_go(before, run, after);
+  });
+  outline.outer = border.ring();
+  outline.area = ring_area(outline.outer);
+  // A ring that went wrong is no measure; the cells always are.
+  if (outline.area < 0.8 * cell_area || outline.area > 2.2 * cell_area) {
+    outline.outer = cells;
+    outline.area = cell_area;
   }
-  std::erase_if(result, [](const RegionFace& f) { return f.length() < 0.1; });
-  std::stable_sort(result.begin(), result.end(),
-                   [](const RegionFace& a, const RegionFace& b) { return a.region < b.region; });
-  return result;
-}
-
-std::vector<Eigen::Vector2d> region_outline(const FloorGrid& grid, const RoomRegions& regions,
-                                            std::size_t region,
-                                            const std::vector<RegionFace>& own_faces,
-                                            const std::vector<WallFace>& faces) {
-  std::vector<Eigen::Vector2i> corners = border_corners(grid, regions, region);
-  if (corners.empty()) return {};
-  return OutlineBuilder(grid, own_faces, faces, std::move(corners)).run();
-}
-
-double ring_area(const std::vector<Eigen::Vector2d>& ring) {
-  double doubled = 0;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Eigen::Vector2d& a = ring[i];
-    const Eigen::Vector2d& b = ring[(i + 1) % ring.size()];
-    doubled += a.x() * b.y() - a.y() * b.x();
-  }
-  return 0.5 * doubled;
-}
-
-bool ring_contains(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d& p) {
-  bool inside = false;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Eigen::Vector2d& a = ring[i];
-    const Eigen::Vector2d& b = ring[(i + 1) % ring.size()];
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < a.x() + (p.y() - a.y()) * (b.x() - a.x()) / (b.y() - a.y()))
-      inside = !inside;
-  }
-  return inside;
+  outline.holes = holes_of(grid, regions, label, own_faces, faces, params.short_gap);
+  for (const std::vector<Eigen::Vector2d>& hole : outline.holes) outline.area -= ring_area(hole);
+  return outline;
 }
 
 }  // namespace planum

@@ -4,34 +4,30 @@
 
 #include <Eigen/Core>
 
+#include "labeling/region_faces.hpp"
 #include "labeling/room_regions.hpp"
-#include "labeling/wall_faces.hpp"
 
 namespace planum {
 
-/// The part of a wall face that bounds a region.
-struct RegionFace {
-  std::size_t region = 0;
-  std::size_t face = 0;
-  double begin = 0, end = 0;  ///< m along the face's tangent
-  double length() const { return end - begin; }
+struct RoomOutlineParams {
+  double short_gap = 0.30;       ///< m, interruptions of a face that are closed in any case
+  double max_recess = 0.70;      ///< m, doorways and niches up to this depth are cut off
+  double max_completion = 0.50;  ///< of a region's area: unseen corners larger than this stay out
 };
 
-/// Which parts of which faces look into which regions, by region, then by face.
-std::vector<RegionFace> faces_of_regions(const FloorGrid& grid, const RoomRegions& regions,
-                                         const std::vector<WallFace>& faces);
+/// The border of a region in the plan frame.
+struct RoomOutline {
+  std::vector<Eigen::Vector2d> outer;               ///< m, counter-clockwise
+  std::vector<std::vector<Eigen::Vector2d>> holes;  ///< pillars, cores; counter-clockwise as well
+  double area = 0;                                  ///< m^2, without the holes
+};
 
-/// The border of a region as a ring, counter-clockwise, in the plan frame. It follows the wall
-/// faces where there are any, else the cells. `own_faces` are those of the region.
-std::vector<Eigen::Vector2d> region_outline(const FloorGrid& grid, const RoomRegions& regions,
-                                            std::size_t region,
-                                            const std::vector<RegionFace>& own_faces,
-                                            const std::vector<WallFace>& faces);
-
-/// Signed area of a ring, positive if counter-clockwise.
-double ring_area(const std::vector<Eigen::Vector2d>& ring);
-
-/// Whether a point lies inside a ring.
-bool ring_contains(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d& p);
+/// The border of a region follows the wall faces where there are any, else the cells. Corners that
+/// no scan saw are completed where both walls beside them point there and nothing else is known to
+/// be in between. `own_faces` are those of the region, `wall` the cells on any face.
+RoomOutline region_outline(const FloorGrid& grid, const RoomRegions& regions, std::size_t region,
+                           const std::vector<RegionFace>& own_faces,
+                           const std::vector<WallFace>& faces, const CellMask& wall,
+                           const RoomOutlineParams& params = {});
 
 }  // namespace planum

@@ -123,7 +123,7 @@ std::pair<double, double> level_of(const FloorGrid& grid, const RoomRegions& reg
 double distance_between_walls(RoomShape& shape, const Eigen::Vector2d& direction,
                               const std::vector<RegionFace>& own,
                               const std::vector<WallFace>& faces) {
-  const auto [low, high] = extent(shape.outline, shape.centre, direction);
+  const auto [low, high] = extent(shape.outline.outer, shape.centre, direction);
   const double forwards = reach(shape.centre, direction, own, faces).value_or(high);
   const double backwards = reach(shape.centre, -direction, own, faces).value_or(-low);
   shape.centre += 0.5 * (forwards - backwards) * direction;
@@ -134,19 +134,15 @@ double distance_between_walls(RoomShape& shape, const Eigen::Vector2d& direction
 
 RoomShape measure_room(const FloorGrid& grid, const RoomRegions& regions, std::size_t region,
                        const std::vector<RegionFace>& own_faces, const std::vector<WallFace>& faces,
-                       const LevelSurface& floor, const LevelSurface& ceiling) {
+                       const CellMask& wall, const LevelSurface& floor,
+                       const LevelSurface& ceiling) {
   RoomShape shape;
-  shape.outline = region_outline(grid, regions, region, own_faces, faces);
-  double cells = 0;
-  for (const std::int32_t r : regions.of_cell) cells += r == static_cast<std::int32_t>(region);
-  const double cell_area = cells * grid.cell * grid.cell;
-  shape.area = ring_area(shape.outline);
-  // A ring that went wrong is no measure; the cells always are.
-  if (std::abs(shape.area - cell_area) > 0.25 * cell_area) shape.area = cell_area;
+  shape.outline = region_outline(grid, regions, region, own_faces, faces, wall);
+  shape.area = shape.outline.area;
   const double turn = main_direction(own_faces, faces);
   const Eigen::Vector2d x(std::cos(turn), std::sin(turn)), y(-x.y(), x.x());
-  const auto [left, right] = extent(shape.outline, Eigen::Vector2d::Zero(), x);
-  const auto [bottom, top] = extent(shape.outline, Eigen::Vector2d::Zero(), y);
+  const auto [left, right] = extent(shape.outline.outer, Eigen::Vector2d::Zero(), x);
+  const auto [bottom, top] = extent(shape.outline.outer, Eigen::Vector2d::Zero(), y);
   shape.centre = 0.5 * (left + right) * x + 0.5 * (bottom + top) * y;
   const double along_x = distance_between_walls(shape, x, own_faces, faces);
   const double along_y = distance_between_walls(shape, y, own_faces, faces);

@@ -11,7 +11,7 @@ namespace planum {
 
 /// A room's measures in the plan frame.
 struct RoomShape {
-  std::vector<Eigen::Vector2d> outline;              ///< m, counter-clockwise
+  RoomOutline outline;
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< m, of the box width x depth
   Eigen::Vector2d along = Eigen::Vector2d::UnitX();  ///< unit, the direction of the depth
   double area = 0;                                   ///< m^2
@@ -24,6 +24,7 @@ struct RoomShape {
 /// the room's own main directions; where no face was seen, the outline's extent stands in.
 RoomShape measure_room(const FloorGrid& grid, const RoomRegions& regions, std::size_t region,
                        const std::vector<RegionFace>& own_faces, const std::vector<WallFace>& faces,
-                       const LevelSurface& floor, const LevelSurface& ceiling);
+                       const CellMask& wall, const LevelSurface& floor,
+                       const LevelSurface& ceiling);
 
 }  // namespace planum

@@ -35,7 +35,8 @@ struct Plan {
   LevelSurface floor, ceiling;
   bool has_ceiling = false;
   std::vector<WallFace> faces;
-  FreeSpace space;
+  CellMask free, wall;
+  FaceSamples samples;
   RoomRegions regions;
   std::vector<RegionFace> region_faces;
   std::vector<RoomShape> shapes;
@@ -73,7 +74,7 @@ CellMask seen_space(const Plan& plan, double ceiling_reach) {
     below[i] = !std::isnan(plan.has_ceiling ? plan.ceiling.height[i] : plan.floor.height[i]);
   const CellMask near = dilated(below, grid.columns, grid.rows, ceiling_reach / grid.cell);
   for (std::size_t i = 0; i < grid.size(); ++i)
-    if (plan.space.free[i] && near[i]) below[i] = 1;
+    if (plan.free[i] && near[i]) below[i] = 1;
   return below;
 }
 
@@ -103,11 +104,28 @@ void join_regions(Plan& plan) {
       mask[i] = plan.regions.of_cell[i] == static_cast<std::int32_t>(r);
     mask = closed(mask, grid.columns, grid.rows, 0.5 * beam_width / grid.cell);
     for (std::size_t i = 0; i < grid.size(); ++i)
-      if (mask[i] && plan.regions.of_cell[i] < 0 && plan.space.free[i])
+      if (mask[i] && plan.regions.of_cell[i] < 0 && plan.free[i])
         plan.regions.of_cell[i] = static_cast<std::int32_t>(r);
   }
   for (Opening& opening : plan.openings.openings)
     for (std::size_t& r : opening.rooms) r = find(r);
+}
+
+/// Faces just below the ceiling, and lower ones where the upper part of a wall was not seen.
+std::vector<WallFace> find_walls(const Cloud& points, const Plan& plan, const RoomParams& params) {
+  std::vector<WallFace> faces =
+      find_wall_faces(points_below_ceiling(points, plan.grid, plan.ceiling, params.wall_points),
+                      plan.grid, params.walls);
+  if (!plan.has_ceiling) return faces;
+  const std::vector<WallPoint> lower =
+      points_lower_down(points, plan.grid, plan.floor, plan.ceiling, faces, params.wall_points);
+  for (const WallFace& face : find_wall_faces(lower, plan.grid, params.walls))
+    if (is_wall(face, lower, plan.grid, plan.floor, plan.free, params.wall_points))
+      faces.push_back(face);
+  const CellMask lintels =
+      lintel_cells(points, plan.grid, plan.floor, plan.ceiling, params.wall_gaps);
+  return with_door_gaps_closed(std::move(faces), plan.grid, plan.ceiling, lintels, plan.free,
+                               params.wall_gaps);
 }
 
 Plan make_plan(const Cloud& cloud, std::span<const Eigen::Vector3d> origins,
@@ -127,14 +145,16 @@ Plan make_plan(const Cloud& cloud, std::span<const Eigen::Vector3d> origins,
   };
   plan.has_ceiling = 10 * known(plan.ceiling.height) > known(plan.floor.height);
   if (!plan.has_ceiling) assume_ceiling(points, grid, plan.ceiling);
-  plan.faces = find_wall_faces(points, grid, plan.ceiling, params.walls);
-  plan.space = trace_rays(points, plan.origins, grid, plan.faces, params.rays);
-  plan.regions = split_into_regions(grid, seen_space(plan, params.ceiling_reach), plan.space.wall,
-                                    params.regions);
+  plan.free = free_cells(points, plan.origins, grid, params.rays);
+  plan.faces = find_walls(points, plan, params);
+  plan.wall = wall_cells(grid, plan.faces);
+  plan.samples = sample_faces(points, plan.origins, grid, plan.faces, params.rays);
+  plan.regions =
+      split_into_regions(grid, seen_space(plan, params.ceiling_reach), plan.wall, params.regions);
   plan.region_faces = faces_of_regions(grid, plan.regions, plan.faces);
   const std::vector<FaceOpening> holes =
-      find_face_openings(plan.faces, plan.space, grid, plan.floor, plan.ceiling, params.search);
-  plan.openings = find_openings(points, grid, plan.faces, plan.region_faces, plan.space, holes,
+      find_face_openings(plan.faces, plan.samples, grid, plan.floor, plan.ceiling, params.search);
+  plan.openings = find_openings(points, grid, plan.faces, plan.region_faces, plan.samples, holes,
                                 plan.regions, params.openings);
   if (!plan.openings.joined_regions.empty()) {
     join_regions(plan);
@@ -145,7 +165,7 @@ Plan make_plan(const Cloud& cloud, std::span<const Eigen::Vector3d> origins,
     for (const RegionFace& f : plan.region_faces)
       if (f.region == r) own.push_back(f);
     plan.shapes.push_back(
-        measure_room(grid, plan.regions, r, own, plan.faces, plan.floor, plan.ceiling));
+        measure_room(grid, plan.regions, r, own, plan.faces, plan.wall, plan.floor, plan.ceiling));
   }
   return plan;
 }
@@ -208,7 +228,7 @@ Room described(const RoomShape& shape, std::size_t number, const Pose& world_fro
   room.width = shape.width;
   room.depth = shape.depth;
   room.height = shape.ceiling - shape.floor;
-  for (const Eigen::Vector2d& p : shape.outline)
+  for (const Eigen::Vector2d& p : shape.outline.outer)
     room.outline.push_back(world_from_plan * Eigen::Vector3d(p.x(), p.y(), shape.floor));
   return room;
 }

@@ -13,6 +13,8 @@
 #include "labeling/openings.hpp"
 #include "labeling/room_regions.hpp"
 #include "labeling/wall_faces.hpp"
+#include "labeling/wall_gaps.hpp"
+#include "labeling/wall_points.hpp"
 #include "meshing/polygon_map.hpp"
 #include "slam/core/cloud.hpp"
 
@@ -44,8 +46,10 @@ struct RoomParams {
   double min_seen = 0.15;            ///< share of a room's floor and of its ceiling that was seen
   double min_seen_unvisited = 0.25;  ///< the same for rooms without a scan
   LevelSurfaceParams levels;
+  WallPointParams wall_points;
   WallFaceParams walls;
-  FreeSpaceParams rays;
+  WallGapParams wall_gaps;
+  RayParams rays;
   RoomRegionParams regions;
   OpeningSearchParams search;
   OpeningParams openings;

@@ -12,43 +12,6 @@ namespace {
 constexpr int direction_bins = 180;  // 2 deg each
 constexpr int points_per_cell = 8;   // kept for the search; all are used for the final fit
 
-struct WallPoint {
-  Eigen::Vector2d position;
-  Eigen::Vector2d normal;  ///< unit
-};
-
-/// Height of the ceiling in front of a wall point, or nan.
-float ceiling_before(const LevelSurface& ceiling, const FloorGrid& grid, const Eigen::Vector2d& p,
-                     const Eigen::Vector2d& normal) {
-  for (const double distance : {0.08, 0.15, 0.25, 0.4}) {
-    const std::ptrdiff_t cell = grid.find(p + distance * normal);
-    if (cell < 0) break;
-    const float height = ceiling.height[static_cast<std::size_t>(cell)];
-    if (!std::isnan(height)) return height;
-  }
-  const std::ptrdiff_t cell = grid.find(p + 0.15 * normal);
-  return cell < 0 ? std::numeric_limits<float>::quiet_NaN()
-                  : ceiling.nearest[static_cast<std::size_t>(cell)];
-}
-
-std::vector<WallPoint> points_below_ceiling(const Cloud& plan, const FloorGrid& grid,
-                                            const LevelSurface& ceiling,
-                                            const WallFaceParams& params) {
-  const double max_z = std::sin(params.max_tilt);
-  std::vector<WallPoint> result;
-  for (std::size_t i = 0; i < plan.points.size(); ++i) {
-    const Eigen::Vector3d n = plan.normals[i].cast<double>();
-    const double horizontal = n.head<2>().norm();
-    if (std::abs(n.z()) > max_z || horizontal < 0.5) continue;
-    const Eigen::Vector2d p = plan.points[i].head<2>().cast<double>();
-    const Eigen::Vector2d normal = n.head<2>() / horizontal;
-    const double below =
-        double{ceiling_before(ceiling, grid, p, normal)} - double{plan.points[i].z()};
-    if (below >= params.band_gap && below <= params.band) result.push_back({p, normal});
-  }
-  return result;
-}
-
 /// At most about points_per_cell points of each cell, spread over them.
 std::vector<WallPoint> thinned(const std::vector<WallPoint>& points, const FloorGrid& grid) {
   std::vector<std::uint32_t> count(grid.size(), 0), seen(grid.size(), 0);
@@ -185,9 +148,8 @@ void refit(WallFace& face, const std::vector<WallPoint>& all, const WallFacePara
 
 }  // namespace
 
-std::vector<WallFace> find_wall_faces(const Cloud& plan, const FloorGrid& grid,
-                                      const LevelSurface& ceiling, const WallFaceParams& params) {
-  const std::vector<WallPoint> all = points_below_ceiling(plan, grid, ceiling, params);
+std::vector<WallFace> find_wall_faces(const std::vector<WallPoint>& all, const FloorGrid& grid,
+                                      const WallFaceParams& params) {
   std::vector<WallPoint> left = thinned(all, grid);
   const double cos_turn = std::cos(params.max_turn);
   std::vector<WallFace> faces;

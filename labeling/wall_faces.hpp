@@ -1,13 +1,10 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "labeling/floor_grid.hpp"
-#include "labeling/level_surfaces.hpp"
-#include "slam/core/cloud.hpp"
 
 namespace planum {
 
@@ -25,10 +22,14 @@ struct WallFace {
   double signed_distance(const Eigen::Vector2d& p) const { return normal.dot(p) - offset; }
 };
 
+/// A point on an upright surface, in the plan frame.
+struct WallPoint {
+  Eigen::Vector2d position;
+  Eigen::Vector2d normal;  ///< unit
+  double height = 0;       ///< m, z
+};
+
 struct WallFaceParams {
-  double band = 0.30;         ///< m below the ceiling where walls are looked for
-  double band_gap = 0.05;     ///< m directly below the ceiling that is left out
-  double max_tilt = 0.35;     ///< rad of a wall point's normal out of the horizontal
   double thickness = 0.05;    ///< m, points this near a line belong to it
   double max_turn = 0.40;     ///< rad between a point's normal and its line's
   double bridged_gap = 0.40;  ///< m, shorter gaps along a face are closed
@@ -36,10 +37,9 @@ struct WallFaceParams {
   int min_points = 20;        ///< of a face, after thinning
 };
 
-/// Wall faces just below the ceiling, where doors and furniture do not interrupt them.
-/// `plan` is a cloud with normals in the plan frame.
-std::vector<WallFace> find_wall_faces(const Cloud& plan, const FloorGrid& grid,
-                                      const LevelSurface& ceiling,
+/// Straight faces through points, found one after the other: the fullest direction, the fullest
+/// line of that direction, and the stretches of it that points cover.
+std::vector<WallFace> find_wall_faces(const std::vector<WallPoint>& points, const FloorGrid& grid,
                                       const WallFaceParams& params = {});
 
 }  // namespace planum
