@@ -12,7 +12,7 @@ namespace planum {
 namespace {
 
 std::vector<std::uint32_t> selection(const MatchingScan& scan, std::size_t max_points) {
-  return even_selection(scan.points.size(), max_points > 0 ? max_points : scan.points.size());
+  return stable_selection(scan.points, max_points > 0 ? max_points : scan.points.size());
 }
 
 /// Adds what pairs in the frame of `target` say about the motion of the source against it.

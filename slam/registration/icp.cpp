@@ -58,23 +58,25 @@ double displacement(const Pose& motion, const NormalEquations& equations) {
 /// The matching of one pair of scans while it runs.
 class Matching {
  public:
-  Matching(const MatchingScan& source, const MatchingScan& target, const IcpParams& params)
+  Matching(const MatchingScan& source, const MatchingScan& target, const Pose& guess,
+           const IcpParams& params)
       : params_(params),
         spacing_(std::max(source.spacing, target.spacing)),
         noise_(pair_noise(source, target)),
+        guess_(guess),
         coarse_(source, target, source.coarse),
         fine_(source, target,
-              even_selection(source.points.size(),
-                             params.max_points > 0 ? params.max_points : source.points.size())) {}
+              stable_selection(source.points,
+                               params.max_points > 0 ? params.max_points : source.points.size())) {}
 
-  Alignment run(const Pose& guess) {
-    Alignment result{.target_from_source = guess};
+  Alignment run() {
+    Alignment result{.target_from_source = guess_};
     const std::vector<double> all = gates(params_, noise_);
     for (const double gate : all) {
       const bool last = gate == all.back();
       const bool coarse = gate > coarse_gates * all.back() && coarse_.selected() < fine_.selected();
       if (!run_gate(coarse ? coarse_ : fine_, gate, last, result))
-        return {.target_from_source = guess};
+        return {.target_from_source = guess_};
     }
     return result;
   }
@@ -91,7 +93,7 @@ class Matching {
       const Determined system = determined(equations);
       const Pose motion = params_.pairing == Pairing::point_to_point
                               ? closed_form_motion(pairs)
-                              : motion_about(equations.centre, system.solution);
+                              : determined_motion(equations, system, result.target_from_source);
       result.target_from_source = orthonormalized(motion * result.target_from_source);
       ++result.iterations;
       const double moved = displacement(motion, equations);
@@ -100,6 +102,17 @@ class Matching {
       if (result.converged || (!last && moved < step_per_gate * gate)) break;
     }
     return true;
+  }
+
+  /// The solution, and along weak directions back to the guess: with a wider gate they may have
+  /// seemed determined, by wrong pairs.
+  Pose determined_motion(const NormalEquations& equations, const Determined& system,
+                         const Pose& target_from_source) const {
+    const Pose back = guess_ * target_from_source.inverse();
+    const Eigen::AngleAxisd turn(back.linear());
+    Vector6d twist;
+    twist << back * equations.centre - equations.centre, turn.angle() * turn.axis();
+    return motion_about(equations.centre, system.solution + system.weak_part * twist);
   }
 
   void note_quality(const NormalEquations& equations, const Determined& system,
@@ -118,6 +131,7 @@ class Matching {
 
   const IcpParams& params_;
   double spacing_, noise_;
+  const Pose& guess_;
   PairFinder coarse_, fine_;
 };
 
@@ -136,7 +150,7 @@ PairGate icp_gate(double gate, double spacing, double max_normal_angle) {
 Alignment align(const MatchingScan& source, const MatchingScan& target, const Pose& guess,
                 const IcpParams& params) {
   check(params, guess);
-  return Matching(source, target, params).run(guess);
+  return Matching(source, target, guess, params).run();
 }
 
 }  // namespace planum

@@ -93,6 +93,7 @@ Determined determined(const NormalEquations& equations) {
   Determined result;
   if (equations.weight <= 0 || equations.radius <= 0) {
     result.weak_directions = 6;
+    result.weak_part.setIdentity();
     return result;
   }
   // Metres for all six: a rotation counts by what it moves at the radius.
@@ -109,6 +110,7 @@ Determined determined(const NormalEquations& equations) {
     const Vector6d direction = solver.eigenvectors().col(i);
     if (eigenvalue < threshold) {
       ++result.weak_directions;
+      result.weak_part += direction * direction.transpose();
       continue;
     }
     const double along = direction.dot(gradient);
@@ -118,6 +120,7 @@ Determined determined(const NormalEquations& equations) {
   }
   const Vector6d per_scale = scale.cwiseInverse();
   result.solution = scale.asDiagonal() * result.solution;
+  result.weak_part = scale.asDiagonal() * result.weak_part * per_scale.asDiagonal();
   result.gradient = equations.weight * (per_scale.asDiagonal() * result.gradient);
   result.hessian =
       equations.weight * (per_scale.asDiagonal() * result.hessian * per_scale.asDiagonal());

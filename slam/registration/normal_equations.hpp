@@ -38,10 +38,11 @@ NormalEquations normal_equations(std::span<const Pair> pairs, Pairing pairing);
 /// make is weak. (Zhang, Kaess & Singh: On degeneracy of optimization-based state estimation
 /// problems, ICRA 2016, with the threshold from the noise.)
 struct Determined {
-  Matrix6d hessian = Matrix6d::Zero();   ///< zero along weak directions, and without tilt errors
-  Vector6d gradient = Vector6d::Zero();  ///< zero along weak directions
-  Vector6d solution = Vector6d::Zero();  ///< the twist that solves the equations, zero along them
-  int weak_directions = 0;               ///< of six
+  Matrix6d hessian = Matrix6d::Zero();    ///< zero along weak directions, and without tilt errors
+  Vector6d gradient = Vector6d::Zero();   ///< zero along weak directions
+  Vector6d solution = Vector6d::Zero();   ///< the twist that solves the equations, zero along them
+  Matrix6d weak_part = Matrix6d::Zero();  ///< takes a twist to its part along weak directions
+  int weak_directions = 0;                ///< of six
 };
 
 Determined determined(const NormalEquations& equations);

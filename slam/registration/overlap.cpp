@@ -8,7 +8,7 @@ namespace planum {
 
 double estimated_overlap(const MatchingScan& source, const MatchingScan& target,
                          const Pose& target_from_source, const OverlapParams& params) {
-  const std::vector<std::uint32_t> samples = even_selection(source.points.size(), params.samples);
+  const std::vector<std::uint32_t> samples = stable_selection(source.points, params.samples);
   if (samples.empty()) return 0;
   const float least_cosine = static_cast<float>(std::cos(params.max_normal_angle));
   const Eigen::Matrix3f rotation = target_from_source.linear().cast<float>();

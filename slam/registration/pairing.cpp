@@ -19,6 +19,19 @@ double biweight(double residual, double gate) {
   return rest > 0 ? rest * rest : 0;
 }
 
+/// A number that looks random but depends on nothing but the place, to 5 cm.
+std::uint64_t rank_of_place(const Eigen::Vector3f& point) {
+  std::uint64_t hash = 0x9E3779B97F4A7C15u;
+  for (const float coordinate : point) {
+    hash ^= static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(coordinate * 20)));
+    // The finalizer of splitmix64 (Steele, Lea, Flood: OOPSLA 2014).
+    hash = (hash ^ (hash >> 30)) * 0xBF58476D1CE4E5B9u;
+    hash = (hash ^ (hash >> 27)) * 0x94D049BB133111EBu;
+    hash ^= hash >> 31;
+  }
+  return hash;
+}
+
 /// Tests the candidate pair of one point; empty if a gate drops it.
 std::optional<Pair> tested(const Eigen::Vector3d& point, const Eigen::Vector3f& normal,
                            const Eigen::Vector3f& nearest, const LocalPlane& plane, Pairing pairing,
@@ -94,10 +107,19 @@ double PairFinder::redundancy(Pairing pairing) const {
   return std::max(1.0, share * source_.patch_points);
 }
 
-std::vector<std::uint32_t> even_selection(std::size_t count, std::size_t most) {
-  std::vector<std::uint32_t> selection(std::min(count, most));
-  for (std::size_t i = 0; i < selection.size(); ++i)
-    selection[i] = static_cast<std::uint32_t>(i * count / selection.size());
+std::vector<std::uint32_t> stable_selection(std::span<const Eigen::Vector3f> points,
+                                            std::size_t most) {
+  std::vector<std::uint32_t> selection(points.size());
+  std::iota(selection.begin(), selection.end(), 0u);
+  if (points.size() <= most) return selection;
+  std::vector<std::uint64_t> rank(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) rank[i] = rank_of_place(points[i]);
+  const auto end = selection.begin() + static_cast<std::ptrdiff_t>(most);
+  std::nth_element(selection.begin(), end, selection.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return rank[a] != rank[b] ? rank[a] < rank[b] : a < b;
+  });
+  selection.erase(end, selection.end());
+  std::sort(selection.begin(), selection.end());
   return selection;
 }
 

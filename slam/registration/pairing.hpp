@@ -57,7 +57,9 @@ class PairFinder {
   std::vector<std::uint32_t> leaf_hints_;
 };
 
-/// Positions of at most `most` points, evenly over the list of `count`.
-std::vector<std::uint32_t> even_selection(std::size_t count, std::size_t most);
+/// Positions of at most `most` points, chosen at random by where the points are: nearly the same
+/// scan, with some points more, fewer or moved a little, gives nearly the same choice.
+std::vector<std::uint32_t> stable_selection(std::span<const Eigen::Vector3f> points,
+                                            std::size_t most);
 
 }  // namespace planum
