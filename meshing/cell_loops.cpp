@@ -75,19 +75,26 @@ void follow_face(const Face& face, const std::array<float, 8>& distance,
   }
 }
 
+}  // namespace
+
+bool in_one_face(int edge_a, int edge_b) {
+  return (faces_of_edges[std::size_t(edge_a)] & faces_of_edges[std::size_t(edge_b)]) != 0;
+}
+
+namespace {
+
 /// Twice the middle of an edge in the unit cell.
 std::array<int, 3> doubled_middle(int edge) {
   const auto [a, b] = corners_of_edge(edge);
   return {(a & 1) + (b & 1), (a >> 1 & 1) + (b >> 1 & 1), (a >> 2) + (b >> 2)};
 }
 
+constexpr int forbidden = 1000;
+
 /// What it costs to join two edges inside the cell: the squared length, forbidden in a face.
 int cost(int edge_a, int edge_b) {
-  constexpr int forbidden = 1000;
   const auto a = doubled_middle(edge_a), b = doubled_middle(edge_b);
-  int sum = (faces_of_edges[std::size_t(edge_a)] & faces_of_edges[std::size_t(edge_b)]) != 0
-                ? forbidden
-                : 0;
+  int sum = in_one_face(edge_a, edge_b) ? forbidden : 0;
   for (std::size_t k = 0; k < 3; ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
   return sum;
 }
@@ -112,34 +119,40 @@ CellLoops cell_loops(const std::array<float, 8>& distance) {
   return loops;
 }
 
-int triangulate_loop(const std::uint8_t* edges, int n,
-                     std::array<std::array<std::uint8_t, 3>, 10>& triangles) {
-  // Least total length of diagonals over all triangulations, by the polygon from i to j.
+LoopTriangles triangulate_loop(const std::uint8_t* edges, int n) {
+  LoopTriangles triangles;
+  const auto add = [&](int i, int j, std::uint8_t k) {
+    triangles.corners[std::size_t(triangles.count++)] = {std::uint8_t(i), std::uint8_t(j), k};
+  };
+  // Least total cost of the diagonals over all triangulations, by the polygon from i to j.
   std::array<std::array<int, 12>, 12> least{}, middle{};
   for (int width = 2; width < n; ++width)
     for (int i = 0; i + width < n; ++i) {
-      const int j = i + width;
+      const auto from = std::size_t(i), to = std::size_t(i + width);
       int best = std::numeric_limits<int>::max();
-      for (int k = i + 1; k < j; ++k) {
-        const int sum =
-            least[std::size_t(i)][std::size_t(k)] + least[std::size_t(k)][std::size_t(j)];
-        if (sum < best) best = sum, middle[std::size_t(i)][std::size_t(j)] = k;
+      for (std::size_t k = from + 1; k < to; ++k) {
+        const int sum = least[from][k] + least[k][to];
+        if (sum < best) best = sum, middle[from][to] = int(k);
       }
       const bool outline = width == n - 1;
-      least[std::size_t(i)][std::size_t(j)] = best + (outline ? 0 : cost(edges[i], edges[j]));
+      least[from][to] = best + (outline ? 0 : cost(edges[from], edges[to]));
     }
-  int count = 0, waiting = 1;
+  if (least[0][std::size_t(n - 1)] >= forbidden) {
+    for (int i = 0; i < n; ++i) add(i, (i + 1) % n, centre_of_loop);
+    return triangles;
+  }
+  int waiting = 1;
   std::array<std::array<int, 2>, 12> stack{};
   stack[0] = {0, n - 1};
   while (waiting > 0) {
     const auto [i, j] = stack[std::size_t(--waiting)];
     if (j - i < 2) continue;
     const int k = middle[std::size_t(i)][std::size_t(j)];
-    triangles[std::size_t(count++)] = {std::uint8_t(i), std::uint8_t(k), std::uint8_t(j)};
+    add(i, k, std::uint8_t(j));
     stack[std::size_t(waiting++)] = {i, k};
     stack[std::size_t(waiting++)] = {k, j};
   }
-  return count;
+  return triangles;
 }
 
 }  // namespace planum

@@ -15,6 +15,9 @@ constexpr std::array<int, 2> corners_of_edge(int edge) {
   return {first, first | 1 << axis};
 }
 
+/// Whether two edges of a cell are edges of one of its faces.
+bool in_one_face(int edge_a, int edge_b);
+
 /// The closed curves in which a surface meets the faces of one cell, as the edges they cross; seen
 /// from the positive side they run counter-clockwise.
 struct CellLoops {
@@ -28,9 +31,14 @@ struct CellLoops {
 /// Hamann 1991), so that both cells at a face agree, and no cracks open.
 CellLoops cell_loops(const std::array<float, 8>& distance);
 
-/// Triangles of a curve as positions in it; n - 2 of them are written. No inner edge lies in a face
-/// of the cell, where that of the next cell might lie too.
-int triangulate_loop(const std::uint8_t* edges, int n,
-                     std::array<std::array<std::uint8_t, 3>, 10>& triangles);
+/// Triangles that fill a curve, as positions in it; `centre_of_loop` stands for a vertex of their
+/// own in the middle of the curve, which those few need that cannot do without inner edges in a
+/// face of the cell, where edges of the next cell's triangles might lie too.
+struct LoopTriangles {
+  int count = 0;
+  std::array<std::array<std::uint8_t, 3>, 12> corners{};
+};
+inline constexpr std::uint8_t centre_of_loop = 255;
+LoopTriangles triangulate_loop(const std::uint8_t* edges, int n);
 
 }  // namespace planum

@@ -293,7 +293,7 @@ void compute_block(const SurfacePatches& patches, CellKey block, const SurfacePa
 DistanceField distance_field(const Cloud& cloud, const SurfaceParams& params,
                              const Progress& progress) {
   check(cloud, params);
-  SurfacePatches patches = surface_patches(cloud, params.voxel);
+  SurfacePatches patches = without_strays(surface_patches(cloud, params.voxel));
   if (patches.patches.empty()) throw Error("mesh: no point has a normal", ErrorKind::no_result);
   patches = with_gaps_filled(std::move(patches), params.gap_reach);
   DistanceField field;

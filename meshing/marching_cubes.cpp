@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include "meshing/block_corners.hpp"
 #include "meshing/cell_loops.hpp"
@@ -184,8 +186,15 @@ class Extraction {
     return std::clamp(at, margin, 1 - margin);
   }
 
+  /// What one block adds to the mesh; vertices of its own are numbered from `own_vertex`.
+  struct BlockMesh {
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<Eigen::Vector3f> centres;
+  };
+  static constexpr std::uint32_t own_vertex = 0x80000000u;
+
   void write_triangles(TriangleMesh& mesh) {
-    std::vector<std::vector<std::array<std::uint32_t, 3>>> triangles(field_.blocks.size());
+    std::vector<BlockMesh> parts(field_.blocks.size());
     for_blocks([&](std::size_t b, BlockCorners& corners) {
       if (cells_[b].empty()) return;
       corners.read(field_, field_.blocks.key(b));
@@ -198,15 +207,40 @@ class Extraction {
             const EdgePlace place = place_of(cell, loops.edges[loop][k]);
             ring[k] = edges_[owners[place.owner]].number(place.edge);
           }
-          std::array<std::array<std::uint8_t, 3>, 10> parts;
-          const int count = triangulate_loop(loops.edges[loop].data(), loops.length[loop], parts);
-          for (std::size_t t = 0; t < std::size_t(count); ++t)
-            triangles[b].push_back({ring[parts[t][0]], ring[parts[t][1]], ring[parts[t][2]]});
+          const std::span inner(ring.data(), std::size_t(loops.length[loop]));
+          fill_ring(mesh, inner, loops.edges[loop].data(), parts[b]);
         }
       }
     });
-    for (const auto& some : triangles)
-      mesh.triangles.insert(mesh.triangles.end(), some.begin(), some.end());
+    for (const BlockMesh& part : parts) {
+      const auto offset = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (auto triangle : part.triangles) {
+        for (std::uint32_t& vertex : triangle)
+          if (vertex >= own_vertex) vertex = vertex - own_vertex + offset;
+        mesh.triangles.push_back(triangle);
+      }
+      mesh.vertices.insert(mesh.vertices.end(), part.centres.begin(), part.centres.end());
+    }
+  }
+
+  static void fill_ring(const TriangleMesh& mesh, std::span<const std::uint32_t> ring,
+                        const std::uint8_t* edges, BlockMesh& part) {
+    const LoopTriangles filling = triangulate_loop(edges, int(ring.size()));
+    const std::uint32_t centre = own_vertex + static_cast<std::uint32_t>(part.centres.size());
+    bool has_centre = false;
+    for (std::size_t t = 0; t < std::size_t(filling.count); ++t) {
+      std::array<std::uint32_t, 3> triangle;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint8_t corner = filling.corners[t][k];
+        has_centre = has_centre || corner == centre_of_loop;
+        triangle[k] = corner == centre_of_loop ? centre : ring[corner];
+      }
+      part.triangles.push_back(triangle);
+    }
+    if (!has_centre) return;
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (const std::uint32_t vertex : ring) sum += mesh.vertices[vertex];
+    part.centres.push_back(sum / float(ring.size()));
   }
 
   const DistanceField& field_;

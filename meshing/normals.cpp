@@ -58,7 +58,8 @@ void planes_around(const PatchGrid& grid, const std::vector<PatchPlane>& planes,
 
 /// The average of the planes that explain the point; zero if none does.
 Eigen::Vector3f normal_of(const Eigen::Vector3f& point, const Eigen::Vector3f& view,
-                          const Candidates& candidates, std::vector<float>& weights) {
+                          const Candidates& candidates, float max_scatter,
+                          std::vector<float>& weights) {
   constexpr float grazing = -0.1f;     // how far a scanner may seem behind a plane
   constexpr float same_plane = 0.87f;  // cosine, about 30 degrees
   weights.assign(candidates.size(), 0.0f);
@@ -67,7 +68,8 @@ Eigen::Vector3f normal_of(const Eigen::Vector3f& point, const Eigen::Vector3f& v
     const PatchPlane& plane = candidates[k];
     const float distance = plane.normal.dot(point) - plane.offset;
     const float ratio = distance * distance / plane.variance;
-    if (ratio > 9 || plane.normal.dot(view) < grazing) continue;
+    if (ratio > 9 && std::abs(distance) > max_scatter) continue;
+    if (plane.normal.dot(view) < grazing) continue;
     weights[k] = std::exp(-0.5f * ratio) * plane.weight / plane.variance;
     if (weights[k] > weights[best]) best = k;
   }
@@ -112,7 +114,7 @@ std::vector<Eigen::Vector3f> estimate_normals(const Cloud& cloud,
           const Eigen::Vector3d point = cloud.points[i].cast<double>();
           normals[i] = normal_of((point - lattice.origin).cast<float>(),
                                  (scan_origins[scan] - point).cast<float>().normalized(),
-                                 candidates, weights);
+                                 candidates, float(params.max_scatter), weights);
         }
       }
     });

@@ -206,17 +206,7 @@ SurfacePatches united(SurfacePatches patches, const std::vector<Filling>& fillin
     patches.cells.insert(patches.cells.end(), filling.cells.begin(), filling.cells.end());
   }
   patches.occupied.resize(patches.patches.size(), ~Occupancy{0});
-  const CellSort sorted = sort_by_cell(patches.cells);
-  SurfacePatches result;
-  result.lattice = patches.lattice;
-  result.blocks = sorted.blocks;
-  result.begin = sorted.begin;
-  for (const std::uint32_t k : sorted.order) {
-    result.patches.push_back(patches.patches[k]);
-    result.cells.push_back(patches.cells[k]);
-    result.occupied.push_back(patches.occupied[k]);
-  }
-  return result;
+  return selected(patches, sort_by_cell(patches.cells).order);
 }
 
 }  // namespace

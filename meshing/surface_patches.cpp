@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "slam/core/parallel.hpp"
 
@@ -61,6 +62,33 @@ void add_patches(const std::array<PatchSum, most_patches>& sums, std::size_t use
   }
 }
 
+/// Whether enough of the points in the 3 x 3 x 3 cells around a patch lie on its plane.
+bool has_support(const SurfacePatches& all, std::uint32_t self, const Eigen::Vector3i& at,
+                 const std::vector<std::uint32_t>& first) {
+  constexpr float least_share = 0.1f;
+  constexpr float same_plane = 0.94f;  // cosine, about 20 degrees
+  constexpr double same_layer = 0.6;   // cells
+  constexpr int width = block_width + 2;
+  const SurfacePatch& own = all.patches[self];
+  float agreeing = 0, points = 0;
+  for (int z = at.z(); z < at.z() + 3; ++z)
+    for (int y = at.y(); y < at.y() + 3; ++y)
+      for (int x = at.x(); x < at.x() + 3; ++x) {
+        std::uint32_t k = first[std::size_t((z * width + y) * width + x)];
+        if (k == no_thing) continue;
+        const CellKey cell = all.cells[k];
+        for (; k < all.cells.size() && all.cells[k] == cell; ++k) {
+          const SurfacePatch& other = all.patches[k];
+          points += other.count;
+          if (other.normal.dot(own.normal) >= same_plane &&
+              std::abs(own.normal.cast<double>().dot(other.centre - own.centre)) <=
+                  same_layer * all.lattice.size)
+            agreeing += other.count;
+        }
+      }
+  return agreeing >= least_share * points;
+}
+
 }  // namespace
 
 SurfacePatches surface_patches(const Cloud& cloud, double cell_size) {
@@ -108,6 +136,42 @@ SurfacePatches surface_patches(const Cloud& cloud, double cell_size) {
   }
   result.blocks = std::move(sorted.blocks);
   return result;
+}
+
+SurfacePatches selected(const SurfacePatches& patches, std::span<const std::uint32_t> positions) {
+  SurfacePatches result;
+  result.lattice = patches.lattice;
+  std::vector<CellKey> blocks;
+  for (const std::uint32_t k : positions) {
+    const CellKey block = block_of(patches.cells[k]);
+    if (blocks.empty() || blocks.back() != block) {
+      blocks.push_back(block);
+      result.begin.push_back(std::uint32_t(result.patches.size()));
+    }
+    result.patches.push_back(patches.patches[k]);
+    result.cells.push_back(patches.cells[k]);
+    result.occupied.push_back(patches.occupied[k]);
+  }
+  result.begin.push_back(std::uint32_t(result.patches.size()));
+  result.blocks = BlockSet(std::move(blocks));
+  return result;
+}
+
+SurfacePatches without_strays(const SurfacePatches& patches) {
+  std::vector<std::uint8_t> kept(patches.patches.size());
+  parallel_for(patches.blocks.size(), blocks_per_task, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> first;
+    for (std::size_t b = begin; b < end; ++b) {
+      const CellKey block = patches.blocks.key(b);
+      surrounding_cells(patches.blocks, patches.begin, patches.cells, block, 1, first);
+      for (std::uint32_t k = patches.begin[b]; k < patches.begin[b + 1]; ++k)
+        kept[k] = has_support(patches, k, cell_of(patches.cells[k]) - cell_of(block), first);
+    }
+  });
+  std::vector<std::uint32_t> positions;
+  for (std::uint32_t k = 0; k < kept.size(); ++k)
+    if (kept[k]) positions.push_back(k);
+  return selected(patches, positions);
 }
 
 }  // namespace planum

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -33,5 +34,12 @@ struct SurfacePatches {
 
 /// One to four patches for each cell that has points with normals.
 SurfacePatches surface_patches(const Cloud& cloud, double cell);
+
+/// Leaves out patches that hardly any of the points around agree with, such as those of stray
+/// normals at edges.
+SurfacePatches without_strays(const SurfacePatches& patches);
+
+/// The patches at these positions, which must not leave the order of cells.
+SurfacePatches selected(const SurfacePatches& patches, std::span<const std::uint32_t> positions);
 
 }  // namespace planum

@@ -93,10 +93,17 @@ Support support_of(const std::vector<Bin>& bins, const Eigen::Vector3d& directio
   return support;
 }
 
-/// What speaks for a direction. Upright things count only as far as there is something they stand
-/// on: else any direction along a wall would do.
-double score(const Support& support) {
+/// The weight that fits to a direction as up. Upright things count only as far as there is
+/// something they stand on, else any direction along a wall would do.
+double fitting(const Support& support) {
   return support.parallel + std::min(support.upright, 2 * support.parallel);
+}
+
+/// Far from the prior, more must speak for a direction.
+double score(const Support& support, const Eigen::Vector3d& direction,
+             const Eigen::Vector3d& prior) {
+  const double cosine = direction.dot(prior);
+  return cosine * cosine * fitting(support);
 }
 
 /// The heaviest bins near the prior, pointing its way.
@@ -115,14 +122,15 @@ std::vector<Bin> candidates_near(std::vector<Bin> bins, const Eigen::Vector3d& p
 
 /// The candidate with the best score that is not near `other`.
 std::optional<Eigen::Vector3d> best_direction(const std::vector<Bin>& bins,
-                                              const std::vector<Bin>& candidates, double spread,
+                                              const std::vector<Bin>& candidates,
+                                              const Eigen::Vector3d& prior, double spread,
                                               const std::optional<Eigen::Vector3d>& other) {
   std::optional<Eigen::Vector3d> best;
   double best_score = 0;
   for (const Bin& candidate : candidates) {
     const Eigen::Vector3d direction = candidate.mean();
     if (other && direction.dot(*other) > std::cos(4 * spread)) continue;
-    const double value = score(support_of(bins, direction, spread));
+    const double value = score(support_of(bins, direction, spread), direction, prior);
     if (value > best_score) best_score = value, best = direction;
   }
   return best;
@@ -170,19 +178,20 @@ std::optional<UpDirection> estimate_up(std::span<const Eigen::Vector3f> normals,
   const std::vector<Bin> bins = binned(normals, weights);
   double total = 0;
   for (const Bin& bin : bins) total += bin.weight;
-  const auto candidates = candidates_near(bins, prior.normalized(), params.max_tilt);
-  const auto best = best_direction(bins, candidates, params.spread, std::nullopt);
+  const Eigen::Vector3d toward = prior.normalized();
+  const auto candidates = candidates_near(bins, toward, params.max_tilt);
+  const auto best = best_direction(bins, candidates, toward, params.spread, std::nullopt);
   if (!best) return std::nullopt;
   UpDirection result;
-  result.up = refined(normals, weights, *best, params.spread);
+  result.up = refined(normals, weights, *best, 2 * params.spread);
   const Support support = support_of(bins, result.up, params.spread);
   result.share = support.parallel / total;
   if (result.share < params.min_share) return std::nullopt;
   double rival = 0;
-  if (const auto second = best_direction(bins, candidates, params.spread, *best))
-    rival = score(support_of(bins, *second, params.spread));
-  const double own = score(support);
-  result.confidence = std::clamp(own / total * (1 - rival / own), 0.0, 1.0);
+  if (const auto second = best_direction(bins, candidates, toward, params.spread, *best))
+    rival = score(support_of(bins, *second, params.spread), *second, toward);
+  const double own = score(support, result.up, toward);
+  result.confidence = std::clamp(fitting(support) / total * (1 - rival / own), 0.0, 1.0);
   return result;
 }
 
