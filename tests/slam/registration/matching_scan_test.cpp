@@ -1,0 +1,108 @@
+#include "slam/registration/matching_scan.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/slam/registration/simulated_room.hpp"
+
+namespace planum {
+namespace {
+
+using testing::message_of;
+using testing::ThreadCount;
+
+/// Points of the plane z = height with noise, over a square round the axis.
+Cloud noisy_plane(double height, double noise, std::size_t count) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> along(-2, 2);
+  std::normal_distribution<double> off(0, noise);
+  Cloud cloud;
+  for (std::size_t i = 0; i < count; ++i)
+    cloud.points.push_back(
+        Eigen::Vector3d(along(random), along(random), height + off(random)).cast<float>());
+  return cloud;
+}
+
+TEST(MatchingScan, FindsThePlaneOfAFloorAndItsNoise) {
+  const MatchingScan scan = matching_scan(noisy_plane(-1, 0.008, 40000));
+  EXPECT_NEAR(scan.noise, 0.008, 0.001);
+  std::size_t known = 0;
+  for (const LocalPlane& plane : scan.planes) {
+    if (!plane.known()) continue;
+    ++known;
+    EXPECT_GT(plane.normal.z(), std::cos(radians(12))) << "towards the scanner, which is above";
+    EXPECT_NEAR(plane.mean.z(), -1, 0.008);
+  }
+  EXPECT_GT(known, scan.points.size() * 9 / 10);
+}
+
+TEST(MatchingScan, TurnsNormalsToTheScannerBelowACeilingToo) {
+  const MatchingScan scan = matching_scan(noisy_plane(2, 0.003, 20000));
+  for (const LocalPlane& plane : scan.planes)
+    if (plane.known()) {
+      EXPECT_LT(plane.normal.z(), 0);
+    }
+}
+
+TEST(MatchingScan, SmoothedPointsLieOnTheSurface) {
+  const MatchingScan scan = matching_scan(noisy_plane(-1, 0.01, 40000));
+  double raw = 0, smoothed = 0;
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    raw += std::pow(scan.points[i].z() + 1, 2);
+    smoothed += std::pow(scan.smoothed(i).z() + 1, 2);
+  }
+  EXPECT_LT(smoothed, raw / 4);
+}
+
+TEST(MatchingScan, HasNoPlaneWhereThereIsALine) {
+  Cloud cloud;
+  for (int i = 0; i < 300; ++i) cloud.points.emplace_back(2, 0.02f * static_cast<float>(i), 0.5f);
+  for (const LocalPlane& plane : matching_scan(cloud).planes) EXPECT_FALSE(plane.known());
+}
+
+TEST(MatchingScan, TakesAnEmptyScanAndASinglePoint) {
+  EXPECT_TRUE(matching_scan({}).points.empty());
+  Cloud one;
+  one.points.emplace_back(1, 2, 3);
+  const MatchingScan scan = matching_scan(one);
+  ASSERT_EQ(scan.planes.size(), 1u);
+  EXPECT_FALSE(scan.planes[0].known());
+  EXPECT_EQ(scan.smoothed(0), scan.points[0]);
+}
+
+TEST(MatchingScan, IsTheSameForAnyNumberOfThreads) {
+  const Cloud cloud =
+      testing::scan_of(testing::furnished_room(), Pose(Eigen::Translation3d(1, 2, 1)));
+  const auto with = [&](int threads) {
+    const ThreadCount count(threads);
+    return matching_scan(cloud);
+  };
+  const MatchingScan one = with(1), many = with(4);
+  ASSERT_EQ(one.points, many.points);
+  EXPECT_EQ(one.coarse, many.coarse);
+  EXPECT_EQ(one.noise, many.noise);
+  for (std::size_t i = 0; i < one.planes.size(); ++i) {
+    EXPECT_EQ(one.planes[i].mean, many.planes[i].mean);
+    EXPECT_EQ(one.planes[i].normal, many.planes[i].normal);
+    EXPECT_EQ(one.planes[i].thickness, many.planes[i].thickness);
+  }
+}
+
+TEST(MatchingScan, RefusesBadInput) {
+  Cloud bad;
+  bad.points.emplace_back(0, 0, std::nanf(""));
+  EXPECT_NE(message_of([&] { matching_scan(bad); }).find("is not finite"), std::string::npos);
+  EXPECT_NE(message_of([&] {
+              matching_scan({}, {.voxel = -1});
+            }).find("registration: voxel must be >= 0 m, got -1"),
+            std::string::npos);
+  EXPECT_NE(message_of([&] {
+              matching_scan({}, {.neighbours = 2});
+            }).find("neighbours must be >= 4, got 2"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace planum
