@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "slam/core/plane.hpp"
 #include "slam/core/triangle_mesh.hpp"
@@ -24,7 +25,7 @@ struct MapPolygon {
 struct PolygonMap {
   std::vector<Eigen::Vector3d> vertices;  ///< m
   std::vector<MapPolygon> polygons;
-  TriangleMesh rest;                      ///< curved parts and parts too small to be polygons
+  TriangleMesh rest;  ///< curved parts and parts too small to be polygons
 };
 
 }  // namespace planum

@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -7,6 +5,8 @@
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 // Who may include whom: docs/architecture.md. The test walks every #include of the sources.
 namespace {
@@ -80,8 +80,8 @@ TEST(Layers, IncludeOnlyWhatIsBelowThem) {
                       << "\" is no path from the root of the project";
     if (from == to || from == "tools") continue;
     ++checked;
-    EXPECT_TRUE(allowed.at(from).contains(to)) << include.file << ":" << include.line << ": "
-                                               << from << " must not include " << to;
+    EXPECT_TRUE(allowed.at(from).contains(to))
+        << include.file << ":" << include.line << ": " << from << " must not include " << to;
   }
   EXPECT_GT(checked, 50) << "the walk found too little to mean anything";
 }
