@@ -111,8 +111,8 @@ OpeningSet find_openings(const Cloud& plan, const FloorGrid& grid,
     if (!hole.back) hole.thickness = thickness_behind(hole, points[h], params.max_thickness);
     find_regions(hole, grid, regions);
     if (joins_regions(hole, faces, region_faces, params)) {
-      result.joined_regions.emplace_back(std::minmax(static_cast<std::size_t>(hole.regions[0]),
-                                                     static_cast<std::size_t>(hole.regions[1])));
+      result.joined_regions.emplace_back(std::minmax(
+          {static_cast<std::size_t>(hole.regions[0]), static_cast<std::size_t>(hole.regions[1])}));
       continue;
     }
     const double sill = hole.rectangle.bottom - hole.front.floor;

@@ -46,7 +46,7 @@ struct OpeningParams {
   double min_beam_drop = 0.35;    ///< m, what hangs less far below the ceiling parts no rooms
   double full_width = 0.8;        ///< of its wall: a passage this wide parts no rooms
   double max_thickness = 0.70;    ///< m between the faces of one wall
-  OpeningEdgeParams edges;
+  OpeningEdgeParams edges = {};
 };
 
 /// Openings, and which regions are one room after all (parted by a beam only).

@@ -89,7 +89,7 @@ void join_regions(Plan& plan) {
     return r;
   };
   for (const auto& [a, b] : plan.openings.joined_regions) {
-    const auto [low, high] = std::minmax(find(a), find(b));
+    const auto [low, high] = std::minmax({find(a), find(b)});
     root[high] = low;
   }
   for (std::int32_t& r : plan.regions.of_cell)

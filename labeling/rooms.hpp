@@ -45,14 +45,14 @@ struct RoomParams {
   double ceiling_reach = 0.75;       ///< m, free space farther from any seen ceiling is outside
   double min_seen = 0.15;            ///< share of a room's floor and of its ceiling that was seen
   double min_seen_unvisited = 0.25;  ///< the same for rooms without a scan
-  LevelSurfaceParams levels;
-  WallPointParams wall_points;
-  WallFaceParams walls;
-  WallGapParams wall_gaps;
-  RayParams rays;
-  RoomRegionParams regions;
-  OpeningSearchParams search;
-  OpeningParams openings;
+  LevelSurfaceParams levels = {};
+  WallPointParams wall_points = {};
+  WallFaceParams walls = {};
+  WallGapParams wall_gaps = {};
+  RayParams rays = {};
+  RoomRegionParams regions = {};
+  OpeningSearchParams search = {};
+  OpeningParams openings = {};
 };
 
 /// Finds rooms, doors and windows in a levelled world (z is up; any yaw): walls are closed curves
