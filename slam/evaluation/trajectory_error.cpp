@@ -131,8 +131,9 @@ TrajectoryError trajectory_error(const Trajectory& estimate, const Trajectory& t
   check(params);
   check(estimate, "estimate");
   check(truth, "truth");
-  TrajectoryError result{.matches = associated(estimate, truth, params.max_stamp_difference),
-                         .alignment = params.alignment};
+  TrajectoryError result;
+  result.matches = associated(estimate, truth, params.max_stamp_difference);
+  result.alignment = params.alignment;
   if (result.matches.empty())
     throw Error(
         fmt::format("evaluation: none of the {} poses has a true one whose stamp is within "

@@ -132,6 +132,22 @@ void bring_up_to_date(const Stage& stage, const Manifest& wanted, Session& sessi
                                       shortcomings.end());
 }
 
+/// A file that a late stage needs must not be missed after minutes of work.
+void check_input_files(const Project& project, std::size_t from, std::size_t until) {
+  for (std::size_t i = from; i <= until; ++i) {
+    const Stage& stage = stages()[i];
+    if (!stage.input_files) continue;
+    try {
+      for (const fs::path& file : stage.input_files(project)) {
+        if (!fs::exists(file)) throw Error(file.string() + ": no such file");
+      }
+    } catch (Error& error) {
+      error.add_context(stage.name);
+      throw;
+    }
+  }
+}
+
 /// Positions of the first and the last stage of a run.
 std::pair<std::size_t, std::size_t> stage_range(const RunOptions& options) {
   const std::size_t from = stage_index(options.from), until = stage_index(options.until);
@@ -146,6 +162,7 @@ std::pair<std::size_t, std::size_t> stage_range(const RunOptions& options) {
 
 RunSummary run(const Project& project, const RunOptions& options, const RunListener& listener) {
   const auto [from, until] = stage_range(options);
+  check_input_files(project, from, until);
   const CacheLayout layout{output_directory(project)};
   make_directories(layout.root());
   const RunLock lock(layout.lock());

@@ -132,7 +132,7 @@ TEST_F(BadInput, NoneOfTheScansHasAPoseAndNothingIsMatched) {
 
 TEST_F(BadInput, ATruthThatIsNotThere) {
   std::filesystem::remove(directory_ / "truth.tum");
-  expect_failure("truth.tum");
+  expect_failure("report: " + (directory_ / "truth.tum").string() + ": no such file");
 }
 
 }  // namespace
