@@ -8,11 +8,11 @@
 namespace planum {
 
 /// Triangles with the same label that hang together by edges.
-struct MeshComponents {
+struct Components {
   std::vector<std::uint32_t> of_triangle;             ///< none for degenerate triangles
   std::vector<std::vector<std::uint32_t>> triangles;  ///< of each component
 };
 
-MeshComponents components(const HalfEdges& edges, const std::vector<std::uint32_t>& labels);
+Components components(const HalfEdges& edges, const std::vector<std::uint32_t>& labels);
 
 }  // namespace planum
