@@ -1,10 +1,9 @@
-#include <gtest/gtest.h>
-
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <fstream>
 #include <sstream>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include "tools/workflow/project_keys.hpp"
 #include "tools/workflow/stage.hpp"
