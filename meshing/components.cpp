@@ -2,8 +2,8 @@
 
 namespace planum {
 
-Components components(const HalfEdges& edges, const std::vector<std::uint32_t>& labels) {
-  Components result;
+MeshComponents components(const HalfEdges& edges, const std::vector<std::uint32_t>& labels) {
+  MeshComponents result;
   result.of_triangle.assign(labels.size(), HalfEdges::none);
   for (std::uint32_t seed = 0; seed < labels.size(); ++seed) {
     if (result.of_triangle[seed] != HalfEdges::none || edges.is_degenerate(seed)) continue;
