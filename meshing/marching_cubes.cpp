@@ -36,28 +36,30 @@ struct BlockCorners {
   }
 };
 
-/// Whether the surface runs through the cell with this lowest corner.
-bool has_surface(const BlockCorners& corners, std::size_t lowest) {
+/// The crossed edges of the cell with this lowest corner, bit e for edge e; 0 if the surface does
+/// not run through it.
+int crossed_edges(const BlockCorners& corners, std::size_t lowest) {
   int inside = 0;
   for (const std::size_t k : cell_corners) {
     const float d = corners.distance[lowest + k];
-    if (std::isnan(d)) return false;
+    if (std::isnan(d)) return 0;
     inside += d < 0;
   }
-  if (inside == 0 || inside == 8) return false;
-  int crossed = 0, near_data = 0;
+  if (inside == 0 || inside == 8) return 0;
+  int edges = 0, crossed = 0, near_data = 0;
   for (int edge = 0; edge < 12; ++edge) {
     const auto [a, b] = corners_of_edge(edge);
     const std::size_t i = lowest + cell_corners[std::size_t(a)];
     const std::size_t j = lowest + cell_corners[std::size_t(b)];
     if ((corners.distance[i] < 0) == (corners.distance[j] < 0)) continue;
     const int found = corners.crossings[i] >> (edge / 4);
-    if ((found & crossing) == 0) return false;
+    if ((found & crossing) == 0) return 0;
+    edges |= 1 << edge;
     ++crossed;
     near_data += (found & crossing_near_data) == crossing_near_data;
   }
   // One without data is a gap in the surface, more are its border.
-  return 4 * (crossed - near_data) <= crossed;
+  return 4 * (crossed - near_data) <= crossed ? edges : 0;
 }
 
 /// A set of edges of a block's corners (3 * corner + axis), with the number of those before each.
@@ -80,8 +82,12 @@ struct EdgeSet {
   }
 };
 
-/// A cell with surface in it, by its place in its block.
-using Cells = std::vector<std::uint16_t>;
+/// A cell with surface in it: its place in its block, and which of its edges are crossed.
+struct SurfaceCell {
+  std::uint16_t cell;
+  std::uint16_t edges;
+};
+using Cells = std::vector<SurfaceCell>;
 
 /// Which block owns an edge of a cell, as bits x y z of corner_blocks, and the edge's number in it.
 struct EdgePlace {
@@ -130,29 +136,25 @@ class Extraction {
   void find_cells() {
     for_blocks([&](std::size_t b, BlockCorners& corners) {
       corners.read(field_, field_.blocks.key(b));
-      for (int cell = 0; cell < block_cells; ++cell)
-        if (has_surface(corners, corner_of_cell(std::size_t(cell))))
-          cells_[b].push_back(std::uint16_t(cell));
+      for (std::size_t cell = 0; cell < block_cells; ++cell)
+        if (const int edges = crossed_edges(corners, corner_of_cell(cell)))
+          cells_[b].push_back({std::uint16_t(cell), std::uint16_t(edges)});
     });
   }
 
   /// An edge belongs to the block of its lower corner; cells of that block and of those below it
   /// may use it.
   void number_vertices() {
-    for_blocks([&](std::size_t b, BlockCorners& corners) {
+    for_blocks([&](std::size_t b, BlockCorners&) {
       const auto below = octant_blocks(field_.blocks, field_.blocks.key(b), -width);
       for (std::size_t k = 0; k < 8; ++k) {
-        if (below[k] == no_block || cells_[below[k]].empty()) continue;
-        corners.read(field_, field_.blocks.key(below[k]));
-        for (const std::uint16_t cell : cells_[below[k]]) {
-          const auto distance = distances_of(corners, cell);
+        if (below[k] == no_block) continue;
+        for (const SurfaceCell& cell : cells_[below[k]])
           for (int edge = 0; edge < 12; ++edge) {
-            const auto [a, z] = corners_of_edge(edge);
-            if ((distance[std::size_t(a)] < 0) == (distance[std::size_t(z)] < 0)) continue;
-            const EdgePlace place = place_of(cell, edge);
+            if ((cell.edges >> edge & 1) == 0) continue;
+            const EdgePlace place = place_of(cell.cell, edge);
             if (place.owner == k) edges_[b].insert(place.edge);
           }
-        }
       }
     });
     for (EdgeSet& edges : edges_) vertices_ = edges.count_from(vertices_);
@@ -199,7 +201,8 @@ class Extraction {
       if (cells_[b].empty()) return;
       corners.read(field_, field_.blocks.key(b));
       const auto owners = octant_blocks(field_.blocks, field_.blocks.key(b), width);
-      for (const std::uint16_t cell : cells_[b]) {
+      for (const SurfaceCell& found : cells_[b]) {
+        const std::uint16_t cell = found.cell;
         const CellLoops loops = cell_loops(distances_of(corners, cell));
         for (std::size_t loop = 0; loop < std::size_t(loops.count); ++loop) {
           std::array<std::uint32_t, 12> ring;

@@ -37,49 +37,89 @@ void check(const Cloud& cloud, std::span<const Eigen::Vector3d> scan_origins,
                 std::to_string(scan_origins.size()) + " scan origins");
 }
 
-/// The planes that points of one cell may belong to.
-using Candidates = std::vector<PatchPlane>;
-
-void planes_around(const PatchGrid& grid, const std::vector<PatchPlane>& planes,
-                   const std::vector<std::uint32_t>& first, const Eigen::Vector3i& at,
-                   Candidates& candidates) {
-  constexpr int width = block_width + 2;
-  candidates.clear();
-  for (int z = at.z(); z < at.z() + 3; ++z)
-    for (int y = at.y(); y < at.y() + 3; ++y)
-      for (int x = at.x(); x < at.x() + 3; ++x) {
-        std::uint32_t patch = first[std::size_t((z * width + y) * width + x)];
-        if (patch == no_thing) continue;
-        const CellKey cell = grid.cells[patch];
-        for (; patch < grid.cells.size() && grid.cells[patch] == cell; ++patch)
-          if (planes[patch].weight > 0) candidates.push_back(planes[patch]);
-      }
-}
-
-/// The average of the planes that explain the point; zero if none does.
-Eigen::Vector3f normal_of(const Eigen::Vector3f& point, const Eigen::Vector3f& view,
-                          const Candidates& candidates, float max_scatter,
-                          std::vector<float>& weights) {
-  constexpr float grazing = -0.1f;     // how far a scanner may seem behind a plane
-  constexpr float same_plane = 0.87f;  // cosine, about 30 degrees
-  weights.assign(candidates.size(), 0.0f);
-  std::size_t best = 0;
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const PatchPlane& plane = candidates[k];
-    const float distance = plane.normal.dot(point) - plane.offset;
-    const float ratio = distance * distance / plane.variance;
-    if (ratio > 9 && std::abs(distance) > max_scatter) continue;
-    if (plane.normal.dot(view) < grazing) continue;
-    weights[k] = std::exp(-0.5f * ratio) * plane.weight / plane.variance;
-    if (weights[k] > weights[best]) best = k;
+/// Planes that points of one cell may belong to, those of one surface as one.
+class Candidates {
+ public:
+  /// Collects the planes of the cells around one; `at` is its place in its block, and `middle` its
+  /// middle relative to the lattice's origin.
+  void read(const PatchGrid& grid, const std::vector<PatchPlane>& planes,
+            const std::vector<std::uint32_t>& first, const Eigen::Vector3i& at,
+            const Eigen::Vector3f& middle) {
+    constexpr int width = block_width + 2;
+    merged_.clear();
+    for (int z = at.z(); z < at.z() + 3; ++z)
+      for (int y = at.y(); y < at.y() + 3; ++y)
+        for (int x = at.x(); x < at.x() + 3; ++x) {
+          std::uint32_t patch = first[std::size_t((z * width + y) * width + x)];
+          if (patch == no_thing) continue;
+          const CellKey cell = grid.cells[patch];
+          for (; patch < grid.cells.size() && grid.cells[patch] == cell; ++patch)
+            if (planes[patch].weight > 0) add(planes[patch], middle);
+        }
+    middle_ = middle;
+    for (Merged& merged : merged_) {
+      merged.mean = merged.normal.normalized();
+      merged.offset /= merged.weight;
+      merged.variance /= merged.weight;
+    }
   }
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  for (std::size_t k = 0; k < candidates.size(); ++k)
-    if (weights[k] > 0 && candidates[k].normal.dot(candidates[best].normal) > same_plane)
-      sum += weights[k] * candidates[k].normal;
-  const float length = sum.norm();
-  return length > 0 ? Eigen::Vector3f(sum / length) : Eigen::Vector3f::Zero();
-}
+
+  /// The average of the planes that explain a point; zero if none does.
+  Eigen::Vector3f normal_of(const Eigen::Vector3f& point, const Eigen::Vector3f& view,
+                            float max_scatter) {
+    constexpr float grazing = -0.1f;     // how far a scanner may seem behind a plane
+    constexpr float same_plane = 0.87f;  // cosine, about 30 degrees
+    const Merged* best = nullptr;
+    float most = 0;
+    for (Merged& plane : merged_) {
+      plane.share = 0;
+      const float distance = plane.mean.dot(point - middle_) - plane.offset;
+      const float ratio = distance * distance / plane.variance;
+      if (ratio > 9 && std::abs(distance) > max_scatter) continue;
+      if (plane.mean.dot(view) < grazing) continue;
+      plane.share = std::exp(-0.5f * ratio) * plane.weight / plane.variance;
+      if (plane.share > most) most = plane.share, best = &plane;
+    }
+    if (best == nullptr) return Eigen::Vector3f::Zero();
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (const Merged& plane : merged_)
+      if (plane.share > 0 && plane.mean.dot(best->mean) > same_plane)
+        sum += plane.share * plane.mean;
+    return sum.normalized();
+  }
+
+ private:
+  /// Planes that agree, as sums weighted by `weight`, later means.
+  struct Merged {
+    Eigen::Vector3f normal;  ///< sum
+    Eigen::Vector3f mean;    ///< unit
+    float offset;            ///< m, from the middle of the cell
+    float variance, weight;
+    float share;  ///< in the normal of the point at hand
+  };
+
+  void add(const PatchPlane& plane, const Eigen::Vector3f& middle) {
+    constexpr float same_direction = 0.995f;  // cosine, about 6 degrees
+    constexpr float most_apart = 0.5f;        // standard deviations
+    const float offset = plane.offset - plane.normal.dot(middle);
+    for (Merged& merged : merged_) {
+      const float apart = offset - merged.offset / merged.weight;
+      if (merged.normal.dot(plane.normal) < same_direction * merged.weight ||
+          apart * apart > most_apart * most_apart * plane.variance)
+        continue;
+      merged.normal += plane.weight * plane.normal;
+      merged.offset += plane.weight * offset;
+      merged.variance += plane.weight * plane.variance;
+      merged.weight += plane.weight;
+      return;
+    }
+    merged_.push_back({plane.weight * plane.normal, plane.normal, plane.weight * offset,
+                       plane.weight * plane.variance, plane.weight, 0});
+  }
+
+  std::vector<Merged> merged_;
+  Eigen::Vector3f middle_;
+};
 
 }  // namespace
 
@@ -99,7 +139,6 @@ std::vector<Eigen::Vector3f> estimate_normals(const Cloud& cloud,
     parallel_for(sorted.blocks.size(), blocks_per_task, [&](std::size_t begin, std::size_t end) {
       std::vector<std::uint32_t> first;
       Candidates candidates;
-      std::vector<float> weights;
       for (std::size_t b = begin; b < end; ++b) {
         const CellKey block = sorted.blocks.key(b);
         surrounding_cells(grid.blocks, grid.begin, grid.cells, block, 1, first);
@@ -108,13 +147,16 @@ std::vector<Eigen::Vector3f> estimate_normals(const Cloud& cloud,
           const std::uint32_t i = sorted.order[k];
           if (cells[i] != cell) {
             cell = cells[i];
-            planes_around(grid, planes, first, cell_of(cell) - cell_of(block), candidates);
+            const Eigen::Vector3d middle =
+                grid.lattice.size * (cell_of(cell).cast<double>().array() + 0.5);
+            candidates.read(grid, planes, first, cell_of(cell) - cell_of(block),
+                            middle.cast<float>());
           }
           const std::size_t scan = cloud.scan.empty() ? 0 : cloud.scan[i];
           const Eigen::Vector3d point = cloud.points[i].cast<double>();
-          normals[i] = normal_of((point - lattice.origin).cast<float>(),
-                                 (scan_origins[scan] - point).cast<float>().normalized(),
-                                 candidates, float(params.max_scatter), weights);
+          normals[i] = candidates.normal_of((point - lattice.origin).cast<float>(),
+                                            (scan_origins[scan] - point).cast<float>().normalized(),
+                                            float(params.max_scatter));
         }
       }
     });

@@ -4,70 +4,25 @@
 #include <cmath>
 #include <string>
 
-#include "meshing/region_lookup.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
 
 namespace planum {
 namespace {
 
-constexpr std::size_t block = 16384;
 constexpr std::size_t max_points = 60'000;  ///< a region; more make no plane better
 constexpr int iterations = 4;
-
-void check(const RefitParams& params, const Regions& regions, const TriangleMesh& mesh,
-           const Cloud& cloud) {
-  if (!(params.max_distance > 0))
-    throw Error("regions: max_distance of the refit is " + std::to_string(params.max_distance) +
-                ", must be above 0");
-  if (regions.of_triangle.size() != mesh.triangles.size())
-    throw Error("regions: they are of a mesh of " + std::to_string(regions.of_triangle.size()) +
-                " triangles, this one has " + std::to_string(mesh.triangles.size()));
-  if (!cloud.normals.empty() && cloud.normals.size() != cloud.points.size())
-    throw Error("regions: the cloud has " + std::to_string(cloud.points.size()) + " points and " +
-                std::to_string(cloud.normals.size()) + " normals");
-}
-
-/// For each point the region it lies in, or Regions::rest. What may lie in several lies in none.
-std::vector<std::uint32_t> regions_of_points(const Regions& regions, const TriangleMesh& mesh,
-                                             const Cloud& cloud, const RefitParams& params) {
-  const RegionLookup lookup(regions, mesh, params.max_distance);
-  const double min_cosine = std::cos(params.max_angle);
-  std::vector<std::uint32_t> region_of(cloud.points.size(), Regions::rest);
-  const auto agrees = [&](std::size_t i, std::uint32_t region) {
-    const Plane& plane = regions.regions[region].plane;
-    const Eigen::Vector3d p = cloud.points[i].cast<double>();
-    if (std::abs(plane.signed_distance(p)) > params.max_distance) return false;
-    return cloud.normals.empty() || cloud.normals[i].cast<double>().dot(plane.normal) >= min_cosine;
-  };
-  parallel_for(cloud.points.size(), block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!cloud.points[i].allFinite())
-        throw Error("cloud: point " + std::to_string(i) + " is not finite");
-      const RegionLookup::Candidates* candidates = lookup.near(cloud.points[i]);
-      if (!candidates) continue;
-      int matches = 0;
-      for (const std::uint32_t region : *candidates)
-        if (region != Regions::rest && agrees(i, region)) {
-          region_of[i] = region;
-          ++matches;
-        }
-      if (matches > 1) region_of[i] = Regions::rest;
-    }
-  });
-  return region_of;
-}
 
 /// The points of each region, in their order, at most max_points evenly picked.
 std::vector<std::vector<std::uint32_t>> points_of_regions(
     const std::vector<std::uint32_t>& region_of, std::size_t regions) {
   std::vector<std::size_t> count(regions, 0), seen(regions, 0);
   for (const std::uint32_t region : region_of)
-    if (region != Regions::rest) ++count[region];
+    if (region < regions) ++count[region];
   std::vector<std::vector<std::uint32_t>> points(regions);
   for (std::uint32_t i = 0; i < region_of.size(); ++i) {
     const std::uint32_t region = region_of[i];
-    if (region == Regions::rest) continue;
+    if (region >= regions) continue;
     const std::size_t step = (count[region] + max_points - 1) / max_points;
     if (seen[region]++ % step == 0) points[region].push_back(i);
   }
@@ -80,8 +35,24 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-/// A plane near `plane` by iteratively reweighted least squares over some points.
-Plane robust_plane(Plane plane, const Cloud& cloud, const std::vector<std::uint32_t>& points) {
+/// For each region, how far its vertices are from a plane at most (m).
+std::vector<double> largest_distances(const Regions& regions, const TriangleMesh& mesh,
+                                      const std::vector<Plane>& planes) {
+  std::vector<double> largest(planes.size(), 0);
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    const std::uint32_t region = regions.of_triangle[f];
+    if (region == Regions::rest) continue;
+    for (const std::uint32_t v : mesh.triangles[f])
+      largest[region] =
+          std::max(largest[region],
+                   std::abs(planes[region].signed_distance(mesh.vertices[v].cast<double>())));
+  }
+  return largest;
+}
+
+}  // namespace
+
+Plane robust_plane(Plane plane, const Cloud& cloud, std::span<const std::uint32_t> points) {
   const Eigen::Vector3d origin = cloud.points[points.front()].cast<double>();
   plane.offset -= plane.normal.dot(origin);
   std::vector<double> residuals(points.size());
@@ -108,28 +79,9 @@ Plane robust_plane(Plane plane, const Cloud& cloud, const std::vector<std::uint3
   return plane;
 }
 
-/// For each region, how far its vertices are from a plane at most (m).
-std::vector<double> largest_distances(const Regions& regions, const TriangleMesh& mesh,
-                                      const std::vector<Plane>& planes) {
-  std::vector<double> largest(planes.size(), 0);
-  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
-    const std::uint32_t region = regions.of_triangle[f];
-    if (region == Regions::rest) continue;
-    for (const std::uint32_t v : mesh.triangles[f])
-      largest[region] =
-          std::max(largest[region],
-                   std::abs(planes[region].signed_distance(mesh.vertices[v].cast<double>())));
-  }
-  return largest;
-}
-
-}  // namespace
-
 Regions refit_planes(const Regions& regions, const TriangleMesh& mesh, const Cloud& cloud,
-                     const RefitParams& params) {
-  check(params, regions, mesh, cloud);
-  const auto points =
-      points_of_regions(regions_of_points(regions, mesh, cloud, params), regions.regions.size());
+                     const PointRegions& points_in, const RefitParams& params) {
+  const auto points = points_of_regions(points_in.of_point, regions.regions.size());
   std::vector<Plane> before, after;
   for (const Region& region : regions.regions) before.push_back(region.plane);
   after = before;
@@ -144,6 +96,16 @@ Regions refit_planes(const Regions& regions, const TriangleMesh& mesh, const Clo
   for (std::size_t r = 0; r < after.size(); ++r)
     if (is[r] <= was[r] + params.max_distance) result.regions[r].plane = after[r];
   return result;
+}
+
+Regions refit_planes(const Regions& regions, const TriangleMesh& mesh, const Cloud& cloud,
+                     const RefitParams& params) {
+  if (!(params.max_distance > 0))
+    throw Error("regions: max_distance of the refit is " + std::to_string(params.max_distance) +
+                ", must be above 0");
+  return refit_planes(regions, mesh, cloud,
+                      point_regions(regions, mesh, cloud, params.max_distance, params.max_angle),
+                      params);
 }
 
 }  // namespace planum

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+
+#include "meshing/point_regions.hpp"
 #include "meshing/regions.hpp"
 #include "slam/core/cloud.hpp"
 
@@ -20,5 +23,12 @@ struct RefitParams {
 /// Throws Error for a point that is not finite or parameters out of range.
 Regions refit_planes(const Regions& regions, const TriangleMesh& mesh, const Cloud& cloud,
                      const RefitParams& params = {});
+
+/// A plane near `plane` through points of a cloud (indices, at least three), robustly.
+Plane robust_plane(Plane plane, const Cloud& cloud, std::span<const std::uint32_t> points);
+
+/// refit_planes() where it is known which points lie in which region.
+Regions refit_planes(const Regions& regions, const TriangleMesh& mesh, const Cloud& cloud,
+                     const PointRegions& points_in, const RefitParams& params);
 
 }  // namespace planum

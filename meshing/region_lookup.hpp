@@ -22,6 +22,9 @@ class RegionLookup {
   /// The regions near a point; null if none.
   const Candidates* near(const Eigen::Vector3f& point) const;
 
+  /// m, the side of the cubes.
+  double cube() const { return cube_; }
+
  private:
   struct Slot {
     std::uint64_t key = free_slot;

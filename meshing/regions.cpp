@@ -5,12 +5,14 @@
 #include <numeric>
 #include <string>
 
-#include <Eigen/Cholesky>
-
+#include "meshing/curvature.hpp"
 #include "meshing/face_geometry.hpp"
 #include "meshing/half_edge.hpp"
+#include "meshing/plane_refit.hpp"
+#include "meshing/point_regions.hpp"
 #include "meshing/region_merging.hpp"
 #include "meshing/region_seeds.hpp"
+#include "meshing/small_planes.hpp"
 #include "slam/core/error.hpp"
 
 namespace planum {
@@ -153,29 +155,16 @@ class Grower {
     refit();
   }
 
-  /// Fits height = a + b u + c v + d u^2 + e u v + f v^2 over the plane, and compares the curvature
-  /// with the limit. Triangles that lean away are left out: the rounded rim of a narrow plane would
-  /// make it look bent.
+  /// Triangles that lean away are left out: the rounded rim of a narrow plane would make it look
+  /// bent.
   bool is_bent() const {
     if (params_.min_radius <= 0) return false;
-    const Eigen::Vector3d u = plane_.normal.unitOrthogonal(), v = plane_.normal.cross(u);
-    Eigen::Matrix<double, 6, 6> normal_matrix = Eigen::Matrix<double, 6, 6>::Zero();
-    Eigen::Matrix<double, 6, 1> right_side = Eigen::Matrix<double, 6, 1>::Zero();
+    CurvatureFit fit(plane_, origin_);
     const double min_cosine = std::cos(params_.max_angle / 2);
-    for (const std::uint32_t f : members_) {
-      if (smooth_.normal[f].dot(plane_.normal) < min_cosine) continue;
-      const Eigen::Vector3d p = faces_.centroid[f] - origin_;
-      const double x = p.dot(u), y = p.dot(v);
-      Eigen::Matrix<double, 6, 1> row;
-      row << 1, x, y, x * x, x * y, y * y;
-      normal_matrix.noalias() += faces_.area[f] * row * row.transpose();
-      right_side += faces_.area[f] * plane_.signed_distance(faces_.centroid[f]) * row;
-    }
-    const Eigen::Matrix<double, 6, 1> q = normal_matrix.ldlt().solve(right_side);
-    if (!q.allFinite()) return false;
-    // Largest principal curvature of the paraboloid.
-    const double curvature = std::abs(q[3] + q[5]) + std::hypot(q[3] - q[5], q[4]);
-    return curvature * params_.min_radius > 1;
+    for (const std::uint32_t f : members_)
+      if (smooth_.normal[f].dot(plane_.normal) >= min_cosine)
+        fit.add(faces_.centroid[f], faces_.area[f]);
+    return fit.curvature() * params_.min_radius > 1;
   }
 
   static constexpr int max_rounds = 10;
@@ -216,6 +205,15 @@ Regions grow_planes(const TriangleMesh& mesh, const RegionParams& params) {
   const HalfEdges edges = half_edges(mesh);
   Regions regions = Grower(mesh, edges, params).grown();
   return merged(regions, mesh, edges, params);
+}
+
+Regions grow_planes(const TriangleMesh& mesh, const Cloud& cloud, const RegionParams& params) {
+  const Regions of_mesh = grow_planes(mesh, params);
+  const RefitParams refit{.max_distance = params.max_distance * 4 / 3};
+  const PointRegions points =
+      point_regions(of_mesh, mesh, cloud, refit.max_distance, refit.max_angle);
+  return with_small_planes(refit_planes(of_mesh, mesh, cloud, points, refit), mesh, cloud, points,
+                           params);
 }
 
 }  // namespace planum

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "slam/core/cloud.hpp"
 #include "slam/core/plane.hpp"
 #include "slam/core/pose.hpp"
 #include "slam/core/triangle_mesh.hpp"
@@ -44,5 +45,10 @@ RegionParams region_params(double cell);
 /// not depend on the number of threads. Throws Error for parameters out of range and for a mesh
 /// with indices or coordinates that are none.
 Regions grow_planes(const TriangleMesh& mesh, const RegionParams& params = {});
+
+/// The same with the points that the mesh was made from, and their normals: planes are fitted to
+/// the points (refit_planes()), and planes that the mesh shows only as a rounded edge, such as the
+/// jambs of a door, are found in the points that lie in no plane of the mesh (small_planes.hpp).
+Regions grow_planes(const TriangleMesh& mesh, const Cloud& cloud, const RegionParams& params = {});
 
 }  // namespace planum

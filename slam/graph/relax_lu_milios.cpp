@@ -51,7 +51,10 @@ class Relaxation {
              const LuMiliosParams& params, std::vector<Pose> poses)
       : graph_(graph), scans_(scans), params_(params), poses_(std::move(poses)) {
     for (const MatchingScan& scan : scans)
-      noise_ = noise_ == 0 ? scan.noise : std::min(noise_, scan.noise);
+      selections_.push_back(stable_selection(
+          scan.points, params.max_points > 0 ? params.max_points : scan.points.size()));
+    for (const MatchingScan& scan : scans)
+      if (scan.noise > 0) noise_ = noise_ == 0 ? scan.noise : std::min(noise_, scan.noise);
     noise_ = std::max(noise_, least_noise);
     for (const Edge& edge : graph.edges)
       if (!edge.accepted) excluded_.insert(std::minmax(edge.from, edge.to));
@@ -97,7 +100,7 @@ class Relaxation {
                            .links_per_scan = params_.links_per_scan},
                           excluded_);
     links_.clear();
-    for (const ScanPair& pair : pairs) links_.emplace_back(pair, scans_, params_.max_points);
+    for (const ScanPair& pair : pairs) links_.emplace_back(pair, scans_, selections_);
     const std::set<ScanPair> linked(pairs.begin(), pairs.end());
     kept_edges_.clear();
     kept_information_.clear();
@@ -154,6 +157,7 @@ class Relaxation {
   std::vector<Pose> poses_;
   double noise_ = 0;
   std::set<ScanPair> excluded_;
+  std::vector<std::vector<std::uint32_t>> selections_;  ///< of each scan
   std::vector<ScanLink> links_;
   std::vector<const Edge*> kept_edges_;
   std::vector<Matrix6d> kept_information_;

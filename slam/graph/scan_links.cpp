@@ -11,10 +11,6 @@
 namespace planum {
 namespace {
 
-std::vector<std::uint32_t> selection(const MatchingScan& scan, std::size_t max_points) {
-  return stable_selection(scan.points, max_points > 0 ? max_points : scan.points.size());
-}
-
 /// Adds what pairs in the frame of `target` say about the motion of the source against it.
 /// `sign` is +1 if the source is scan a of the link, else -1.
 void add(std::span<const Pair> pairs, Pairing pairing, double redundancy,
@@ -74,12 +70,12 @@ std::vector<ScanPair> overlapping_scans(std::span<const MatchingScan> scans,
 double LinkFit::rms() const { return weight > 0 ? std::sqrt(squared_residuals / weight) : 0; }
 
 ScanLink::ScanLink(const ScanPair& pair, std::span<const MatchingScan> scans,
-                   std::size_t max_points)
+                   std::span<const std::vector<std::uint32_t>> selections)
     : pair_(pair),
       noise_(pair_noise(scans[pair.first], scans[pair.second])),
       spacing_(std::max(scans[pair.first].spacing, scans[pair.second].spacing)),
-      a_in_b_(scans[pair.first], scans[pair.second], selection(scans[pair.first], max_points)),
-      b_in_a_(scans[pair.second], scans[pair.first], selection(scans[pair.second], max_points)) {}
+      a_in_b_(scans[pair.first], scans[pair.second], selections[pair.first]),
+      b_in_a_(scans[pair.second], scans[pair.first], selections[pair.second]) {}
 
 LinkFit ScanLink::fit(const std::vector<Pose>& world_from_scan, Pairing pairing, double gate,
                       double max_normal_angle, std::size_t min_pairs) {

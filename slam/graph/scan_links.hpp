@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <set>
 #include <span>
 #include <utility>
@@ -42,8 +43,9 @@ struct LinkFit {
 /// find theirs in b, and those of b in a, so that neither is favoured.
 class ScanLink {
  public:
-  /// `max_points` of each scan are looked at; 0: all.
-  ScanLink(const ScanPair& pair, std::span<const MatchingScan> scans, std::size_t max_points);
+  /// `selections`: for each scan the positions of the points that are looked at.
+  ScanLink(const ScanPair& pair, std::span<const MatchingScan> scans,
+           std::span<const std::vector<std::uint32_t>> selections);
 
   /// The residuals of all pairs, linearized for motions X <- exp_se3(x) X of both poses, weighted
   /// by the inverse of their variance. Fewer than min_pairs one way say nothing that way.

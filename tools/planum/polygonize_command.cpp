@@ -49,7 +49,7 @@ void polygonize_command(const PolygonizeArguments& arguments) {
       reconstruct(cloud, arguments.surface, console.start_bar("mesh", "cells"));
   console.end_bar();
   const double voxel = arguments.surface.voxel;
-  const Regions regions = grow_planes(mesh, region_params(voxel));
+  const Regions regions = grow_planes(mesh, cloud, region_params(voxel));
   const PolygonMap map = polygonize(mesh, regions, polygon_params(voxel));
   const Labels labels = label(map);
   RoomMap no_rooms;

@@ -39,7 +39,8 @@ std::string summary(const PolygonMap& map) {
 void work(StageContext& context) {
   const Settings& settings = context.project.settings;
   const TriangleMesh& mesh = context.results.mesh.get();
-  const Regions regions = grow_planes(mesh, chosen_region_params(settings));
+  const Regions regions =
+      grow_planes(mesh, context.results.cloud.get(), chosen_region_params(settings));
   PolygonMap map = polygonize(mesh, regions, chosen_polygon_params(settings));
   if (map.polygons.empty()) {
     throw Error(
@@ -56,9 +57,9 @@ void work(StageContext& context) {
 
 Stage polygons_stage() {
   return {.name = "polygons",
-          .version = 1,
+          .version = 2,
           .unit = "steps",
-          .needs = {"mesh"},
+          .needs = {"cloud", "mesh"},
           .parameters = {"polygons", "mesh.voxel_m"},
           .input_files = {},
           .work = work};
