@@ -22,7 +22,7 @@ namespace planum {
 
 /// A space enclosed by walls, a floor and a ceiling.
 struct Room {
-  std::string name;                                  ///< "room 1" is where the first scan was taken
+  std::string name;  ///< "room 1" is that of the first scan taken in a room
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< m, of the box width x depth x height
   Eigen::Vector3d along = Eigen::Vector3d::UnitX();  ///< unit, horizontal, direction of the depth
   double area = 0;                       ///< m^2 of the floor plan, as far as it was seen

@@ -50,9 +50,7 @@ class Relaxation {
   Relaxation(const PoseGraph& graph, std::span<const MatchingScan> scans,
              const LuMiliosParams& params, std::vector<Pose> poses)
       : graph_(graph), scans_(scans), params_(params), poses_(std::move(poses)) {
-    for (const MatchingScan& scan : scans)
-      selections_.push_back(stable_selection(
-          scan.points, params.max_points > 0 ? params.max_points : scan.points.size()));
+    select(params.max_points);
     for (const MatchingScan& scan : scans)
       if (scan.noise > 0) noise_ = noise_ == 0 ? scan.noise : std::min(noise_, scan.noise);
     noise_ = std::max(noise_, least_noise);
@@ -71,6 +69,10 @@ class Relaxation {
       result.converged = iterate(gate, last, progress, result);
       if (last) break;
     }
+    if (params_.max_points == 0 || params_.last_points == params_.max_points) return;
+    select(params_.last_points);
+    choose_links();
+    result.converged = iterate(1, true, progress, result);
   }
 
   /// Fits of all links at the last gate, with any poses.
@@ -87,6 +89,13 @@ class Relaxation {
   const std::vector<Pose>& poses() const { return poses_; }
 
  private:
+  /// Which points of each scan are looked at.
+  void select(std::size_t most) {
+    selections_.clear();
+    for (const MatchingScan& scan : scans_)
+      selections_.push_back(stable_selection(scan.points, most > 0 ? most : scan.points.size()));
+  }
+
   double last_gate(const ScanLink& link) const {
     return params_.last_gate > 0 ? params_.last_gate : gate_per_noise * link.noise();
   }

@@ -17,10 +17,12 @@ struct LuMiliosParams {
   double max_distance = 15;        ///< m, scans taken farther apart are not linked
   double min_overlap = 0.15;       ///< estimated share of common points that makes a link
   std::size_t links_per_scan = 8;  ///< each scan brings its best links, at most so many
-  double first_gate = 0;  ///< m, how far apart the points of a pair may be; 0: three last gates
-  double last_gate = 0;   ///< m, the same at last; 0: six times the noise of two scans
+  double first_gate = 0;  ///< m, how far apart the points of a pair may be; 0, or no last gate
+                          ///< given: three last gates
+  double last_gate = 0;   ///< m, the same at last; 0: ten times the noise of two scans
   double max_normal_angle = radians(45);  ///< rad, pairs whose surfaces face more apart are dropped
   std::size_t max_points = 2000;          ///< of each scan in each link, evenly chosen; 0: all
+  std::size_t last_points = 10000;        ///< the same at last, when the poses hardly move any more
   std::size_t min_pairs = 50;             ///< of a link; fewer say nothing
   int max_iterations = 30;                ///< at each gate
   double tolerance = 0.02;  ///< done when no pose moves more than this much of the noise

@@ -3,6 +3,7 @@
 #include <random>
 #include <set>
 
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <gtest/gtest.h>
 
 #include "slam/core/error.hpp"
@@ -36,6 +37,44 @@ TEST(HalfEdges, PairEveryEdgeOfAClosedSurface) {
   EXPECT_EQ(std::count(edges.opposite.begin(), edges.opposite.end(), HalfEdges::none), 0);
   EXPECT_EQ(edges.complex_edges, 0u);
   EXPECT_EQ(edges.split_vertices, 0u);
+}
+
+/// For each half-edge 3 f + k the face on its other side, as OpenMesh has it; -1 at the rim.
+std::vector<int> opposite_faces_of_openmesh(const TriangleMesh& mesh) {
+  OpenMesh::TriMesh_ArrayKernelT<> reference;
+  std::vector<OpenMesh::VertexHandle> handles;
+  for (const Eigen::Vector3f& v : mesh.vertices)
+    handles.push_back(reference.add_vertex({v.x(), v.y(), v.z()}));
+  std::vector<int> result;
+  for (const auto& [a, b, c] : mesh.triangles)
+    EXPECT_TRUE(reference.add_face(handles[a], handles[b], handles[c]).is_valid());
+  for (const auto& triangle : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto half_edge =
+          reference.find_halfedge(handles[triangle[k]], handles[triangle[(k + 1) % 3]]);
+      result.push_back(reference.opposite_face_handle(half_edge).idx());
+    }
+  return result;
+}
+
+TEST(HalfEdges, KnowTheNeighboursThatOpenMeshKnows) {
+  const auto wave = [](const Eigen::Vector3d& p) {
+    return p.z() - 0.3 * std::sin(2 * p.x()) * std::cos(3 * p.y());  // a sheet with a rim
+  };
+  const auto ring = [](const Eigen::Vector3d& p) {
+    return 0.3 - std::hypot(std::hypot(p.x(), p.y()) - 0.8, p.z());
+  };
+  for (const testing::Field& field : {testing::Field(wave), testing::Field(ring)}) {
+    const TriangleMesh mesh = testing::MarchingTetrahedra::surface(
+        field, Eigen::Vector3d::Constant(-1.3), Eigen::Vector3d::Constant(1.3), 0.15);
+    ASSERT_GT(mesh.triangles.size(), 500u);
+    const HalfEdges edges = half_edges(mesh);
+    const std::vector<int> expected = opposite_faces_of_openmesh(mesh);
+    for (std::uint32_t h = 0; h < edges.opposite.size(); ++h) {
+      const std::uint32_t back = edges.opposite[h];
+      ASSERT_EQ(back == HalfEdges::none ? -1 : static_cast<int>(back / 3), expected[h]) << h;
+    }
+  }
 }
 
 TEST(HalfEdges, GiveEachFanItsOwnVertex) {

@@ -15,14 +15,20 @@ namespace {
 
 constexpr std::array all_labels = {Label::unknown, Label::floor, Label::ceiling, Label::wall};
 
-/// The label of a triangle, or nothing where it is in no polygon.
-const PolygonLabel* label_of(const TriangulatedMap& mesh, const Labels& labels, std::size_t i) {
-  const std::uint32_t polygon = mesh.polygon[i];
-  if (polygon == TriangulatedMap::rest) return nullptr;
-  if (polygon >= labels.polygons.size())
-    throw Error(fmt::format("map: triangle {} is of polygon {}, but there are {} labels", i,
-                            polygon, labels.polygons.size()));
-  return &labels.polygons[polygon];
+/// The label of each triangle, or null where it is in no polygon.
+std::vector<const PolygonLabel*> labels_of_triangles(const TriangulatedMap& mesh,
+                                                     const Labels& labels) {
+  if (mesh.polygon.size() != mesh.mesh.triangles.size())
+    throw Error(fmt::format("map: {} triangles, but {} of them are of a polygon",
+                            mesh.mesh.triangles.size(), mesh.polygon.size()));
+  std::vector<const PolygonLabel*> result;
+  for (const std::uint32_t polygon : mesh.polygon) {
+    if (polygon != TriangulatedMap::rest && polygon >= labels.polygons.size())
+      throw Error(fmt::format("map: triangle {} is of polygon {}, but there are {} labels",
+                              result.size(), polygon, labels.polygons.size()));
+    result.push_back(polygon == TriangulatedMap::rest ? nullptr : &labels.polygons[polygon]);
+  }
+  return result;
 }
 
 std::string material_text(const std::string& material, const Colour& colour) {
@@ -36,13 +42,12 @@ void write_map_ply(const std::filesystem::path& path, const TriangulatedMap& mes
                    const Labels& labels) {
   MeshAttributes attributes;
   attributes.triangle_properties = {{"label", {}}, {"polygon", {}}};
-  for (std::size_t i = 0; i < mesh.polygon.size(); ++i) {
-    const PolygonLabel* label = label_of(mesh, labels, i);
+  for (const PolygonLabel* label : labels_of_triangles(mesh, labels)) {
     attributes.triangle_colours.push_back(label ? colour_of(label->label) : colour_of_rest());
     attributes.triangle_properties[0].values.push_back(label ? static_cast<int>(label->label) : -1);
-    attributes.triangle_properties[1].values.push_back(
-        label ? static_cast<std::int32_t>(mesh.polygon[i]) : -1);
   }
+  for (const std::uint32_t polygon : mesh.polygon)  // `rest` is -1
+    attributes.triangle_properties[1].values.push_back(static_cast<std::int32_t>(polygon));
   write_ply(path, mesh.mesh, attributes);
 }
 
@@ -57,11 +62,9 @@ void write_map_obj(const std::filesystem::path& path, const TriangulatedMap& mes
   }
   labelled.names.emplace_back("rest");
   materials += material_text("rest", colour_of_rest());
-  for (std::size_t i = 0; i < mesh.polygon.size(); ++i) {
-    const PolygonLabel* label = label_of(mesh, labels, i);
+  for (const PolygonLabel* label : labels_of_triangles(mesh, labels))
     labelled.group.push_back(label ? static_cast<std::uint32_t>(label->label)
                                    : static_cast<std::uint32_t>(all_labels.size()));
-  }
   std::filesystem::path library = path;
   library.replace_extension(".mtl");
   write_file_atomically(library, materials);

@@ -28,21 +28,46 @@ struct PolygonizeArguments {
   WorkArguments work;
 };
 
-/// Places by scan number. Without a file, one scanner at the origin saw everything.
-std::vector<Eigen::Vector3d> read_origins(const std::filesystem::path& file) {
-  if (file.empty()) return {Eigen::Vector3d::Zero()};
+/// A cloud, and where its scans were taken.
+struct SeenCloud {
+  Cloud cloud;  ///< `scan` counts the origins
   std::vector<Eigen::Vector3d> origins;
-  for (const StampedPose& pose : read_tum(file)) origins.push_back(pose.pose.translation());
-  return origins;
+};
+
+/// The scans of a cloud go by the first column of the trajectory. Without one, a scanner at the
+/// origin saw everything.
+SeenCloud read_seen_cloud(const PolygonizeArguments& arguments) {
+  SeenCloud seen{read_ply_cloud(arguments.cloud), {}};
+  if (arguments.origins.empty()) {
+    seen.origins = {Eigen::Vector3d::Zero()};
+    seen.cloud.scan.clear();
+    return seen;
+  }
+  std::map<double, std::uint32_t> line_of;
+  for (const StampedPose& pose : read_tum(arguments.origins)) {
+    line_of.emplace(pose.stamp, static_cast<std::uint32_t>(seen.origins.size()));
+    seen.origins.push_back(pose.pose.translation());
+  }
+  if (seen.cloud.scan.empty() && seen.origins.size() > 1)
+    throw Error(
+        fmt::format("{}: points do not know their scan (no property `scan`), so it is "
+                    "unknown which of the {} places in {} saw them",
+                    arguments.cloud.string(), seen.origins.size(), arguments.origins.string()));
+  for (std::uint32_t& scan : seen.cloud.scan) {
+    const auto line = line_of.find(scan);
+    if (line == line_of.end())
+      throw Error(fmt::format("{}: a point is of scan {}, which {} does not have",
+                              arguments.cloud.string(), scan, arguments.origins.string()));
+    scan = line->second;
+  }
+  return seen;
 }
 
 void polygonize_command(const PolygonizeArguments& arguments) {
   set_thread_count(arguments.work.threads);
   Console console(arguments.work.quiet);
-  Cloud cloud = read_ply_cloud(arguments.cloud);
-  const auto origins = read_origins(arguments.origins);
+  auto [cloud, origins] = read_seen_cloud(arguments);
   if (cloud.normals.empty()) {
-    if (origins.size() == 1) cloud.scan.clear();
     cloud.normals = estimate_normals(cloud, origins, {}, console.start_bar("normals", "points"));
   }
   const TriangleMesh mesh =

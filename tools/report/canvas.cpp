@@ -48,13 +48,15 @@ void Canvas::line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const 
 void Canvas::polyline(const std::vector<Eigen::Vector2d>& points, bool closed,
                       const Stroke& stroke) {
   const double reach = stroke.width / 2 + 1;
+  const Eigen::Array2d size(width_, height_);
   const std::size_t segments = points.size() - (closed || points.empty() ? 0 : 1);
   for (std::size_t i = 0; i < segments; ++i) {
     const Eigen::Vector2d &a = points[i], &b = points[(i + 1) % points.size()];
-    const Eigen::Vector2d low = (a.cwiseMin(b).array() - reach).floor().cwiseMax(0);
-    const Eigen::Vector2d high = (a.cwiseMax(b).array() + reach).ceil();
-    for (int y = static_cast<int>(low.y()); y <= std::min(high.y(), height_ - 1.0); ++y) {
-      for (int x = static_cast<int>(low.x()); x <= std::min(high.x(), width_ - 1.0); ++x) {
+    // Clamped before they become int: lines may end anywhere.
+    const Eigen::Array2d low = (a.cwiseMin(b).array() - reach).floor().max(0).min(size);
+    const Eigen::Array2d high = (a.cwiseMax(b).array() + reach).ceil().min(size - 1);
+    for (int y = static_cast<int>(low.y()); y <= high.y(); ++y) {
+      for (int x = static_cast<int>(low.x()); x <= high.x(); ++x) {
         const double distance = distance_to_segment({x + 0.5, y + 0.5}, a, b);
         const double cover = std::clamp(stroke.width / 2 + 0.5 - distance, 0.0, 1.0);
         blend(x, y, stroke.colour, cover * stroke.opacity);
@@ -82,7 +84,7 @@ void Canvas::fill(const std::vector<std::vector<Eigen::Vector2d>>& rings, const 
     }
     std::sort(crossings.begin(), crossings.end());
     for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
-      const double left = std::max(crossings[i], 0.0);
+      const double left = std::clamp<double>(crossings[i], 0, width_);
       const double right = std::min<double>(crossings[i + 1], width_);
       for (int x = static_cast<int>(left); x < right; ++x) {
         const double cover = std::min(right, x + 1.0) - std::max<double>(left, x);

@@ -99,7 +99,8 @@ void write_report_json(const std::filesystem::path& path, const RunReport& repor
     json["rooms"] = rooms_json(*report.rooms);
     json["openings"] = openings_json(*report.rooms);
   }
-  write_file_atomically(path, json.dump(1) + "\n");
+  // Scans are named after files, whose names may be of any encoding.
+  write_file_atomically(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace planum

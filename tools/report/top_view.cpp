@@ -17,6 +17,7 @@ constexpr Colour before_colour = {230, 159, 0}, after_colour = {0, 114, 178},
                  loop_colour = {204, 121, 167}, door_colour = {213, 94, 0},
                  window_colour = {86, 180, 233};
 constexpr double legend_height = 56;  // pixels
+constexpr int legend_width = 800;     // pixels, at least: all its entries
 constexpr float max_level = 0.7f;     // |cos| of a normal: steeper surfaces are drawn
 
 /// From metres, y up, to pixels, y down.
@@ -37,7 +38,7 @@ PlanFrame frame_of(const TopView& view, const TopViewParams& params) {
     for (const int axis : {0, 1})
       drawn[static_cast<std::size_t>(axis)].push_back(view.cloud.points[i][axis]);
   }
-  PlanFrame frame{.low = {0, 0}, .high = {0, 0}};
+  Eigen::AlignedBox2d box;
   for (const int axis : {0, 1}) {
     auto& values = drawn[static_cast<std::size_t>(axis)];
     if (values.empty()) continue;
@@ -47,19 +48,15 @@ PlanFrame frame_of(const TopView& view, const TopViewParams& params) {
       std::nth_element(values.begin(), place, values.end());
       return double(*place);
     };
-    frame.low[axis] = at(0.001);
-    frame.high[axis] = at(0.999);
+    box.min()[axis] = at(0.001);
+    box.max()[axis] = at(0.999);
   }
-  for (const auto& path : {view.before, view.after}) {
-    for (const Pose& pose : path) {
-      frame.low = frame.low.cwiseMin(pose.translation().head<2>());
-      frame.high = frame.high.cwiseMax(pose.translation().head<2>());
-    }
-  }
-  frame.low.array() -= params.margin;
-  frame.high.array() += params.margin;
-  frame.scale = params.longest_side / (frame.high - frame.low).maxCoeff();
-  return frame;
+  for (const auto* path : {&view.before, &view.after})
+    for (const Pose& pose : *path) box.extend(pose.translation().head<2>());
+  if (box.isEmpty()) box.extend(Eigen::Vector2d(0, 0));
+  return {.low = box.min().array() - params.margin,
+          .high = box.max().array() + params.margin,
+          .scale = params.longest_side / (box.sizes().maxCoeff() + 2 * params.margin)};
 }
 
 void draw_rooms(Canvas& canvas, const PlanFrame& frame, const RoomMap& rooms) {
@@ -140,9 +137,9 @@ void draw_legend(Canvas& canvas, const PlanFrame& frame, const TopView& view) {
                 {double(canvas.width()), double(canvas.height())},
                 {0, double(canvas.height())}}},
               paper, 1);
-  // One, two, five, ten ... metres: the largest that is shorter than a sixth of the picture.
-  double metres = 1;
-  for (const double step : {2.0, 5.0, 10.0, 20.0, 50.0, 100.0})
+  // The largest of these that is shorter than a sixth of the picture.
+  double metres = 0.1;
+  for (const double step : {0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0})
     if (step * frame.scale < canvas.width() / 6.0) metres = step;
   const double bar = metres * frame.scale;
   canvas.line({20, y + 8}, {20 + bar, y + 8}, {.colour = ink, .width = 3});
@@ -168,12 +165,17 @@ void draw_legend(Canvas& canvas, const PlanFrame& frame, const TopView& view) {
 
 void write_top_view(const std::filesystem::path& path, const TopView& view,
                     const TopViewParams& params) {
+  if (params.longest_side < 100)
+    throw Error(
+        fmt::format("top view: longest_side must be >= 100 pixels, got {}", params.longest_side));
+  if (!(params.margin > 0))
+    throw Error(fmt::format("top view: margin must be > 0 m, got {}", params.margin));
   if (view.cloud.normals.size() != view.cloud.points.size())
     throw Error("top view: the cloud has no normals");
   const PlanFrame frame = frame_of(view, params);
   const Eigen::Vector2d size = (frame.high - frame.low) * frame.scale;
-  Canvas canvas(std::max(600, static_cast<int>(std::ceil(size.x()))),
-                static_cast<int>(std::ceil(size.y() + legend_height)), paper);
+  Canvas canvas(std::max(legend_width, static_cast<int>(std::lround(size.x()))),
+                static_cast<int>(std::lround(size.y() + legend_height)), paper);
   if (view.rooms) draw_rooms(canvas, frame, *view.rooms);
   draw_points(canvas, frame, view.cloud);
   if (view.rooms) draw_openings(canvas, frame, *view.rooms);

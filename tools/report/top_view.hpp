@@ -20,13 +20,13 @@ struct TopView {
 };
 
 struct TopViewParams {
-  int longest_side = 1600;  ///< pixels
-  double margin = 0.4;      ///< m around everything
+  int longest_side = 1600;  ///< pixels, at least 100
+  double margin = 0.4;      ///< m around everything, more than 0
 };
 
 /// Draws the plan of a map: walls as dense points, rooms with names and sizes, doors and windows,
 /// the path before and after, loops, a scale. Writes a PNG. Throws Error if the cloud has no
-/// normals, or if the file cannot be written.
+/// normals, for parameters out of range, or if the file cannot be written.
 void write_top_view(const std::filesystem::path& path, const TopView& view,
                     const TopViewParams& params = {});
 

@@ -1,5 +1,7 @@
 #include "tools/workflow/results.hpp"
 
+#include <unordered_map>
+
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
@@ -50,6 +52,12 @@ Imported load_imported(const CacheLayout& layout) {
   return imported;
 }
 
+/// The file has the numbers of the scans.
+Cloud load_cloud(const CacheLayout& layout) {
+  return with_scan_positions(read_ply_cloud(layout.output / "cloud.ply"),
+                             unarchived<World>(read_file(layout.result("cloud"))));
+}
+
 }  // namespace
 
 Results::Results(const CacheLayout& layout, const MatchingScanParams& matching)
@@ -57,7 +65,7 @@ Results::Results(const CacheLayout& layout, const MatchingScanParams& matching)
       registered(archive_loader<SequenceMatch>(layout, "register")),
       relaxed(archive_loader<Relaxed>(layout, "relax")),
       world(archive_loader<World>(layout, "cloud")),
-      cloud(loader("cloud", [layout] { return read_ply_cloud(layout.output / "cloud.ply"); })),
+      cloud(loader("cloud", [layout] { return load_cloud(layout); })),
       mesh(loader("mesh", [layout] { return read_ply_mesh(layout.output / "mesh.ply"); })),
       polygons(archive_loader<PolygonMap>(layout, "polygons")),
       labelled(archive_loader<Labelled>(layout, "labels")),
@@ -96,6 +104,23 @@ std::vector<Eigen::Vector3d> scan_origins(const World& world) {
   std::vector<Eigen::Vector3d> origins;
   for (const Pose& pose : world.poses) origins.push_back(pose.translation());
   return origins;
+}
+
+Cloud with_scan_numbers(Cloud cloud, const World& world) {
+  for (std::uint32_t& scan : cloud.scan) scan = world.numbers[scan];
+  return cloud;
+}
+
+Cloud with_scan_positions(Cloud cloud, const World& world) {
+  std::unordered_map<std::uint32_t, std::uint32_t> position;
+  for (std::uint32_t i = 0; i < world.numbers.size(); ++i) position[world.numbers[i]] = i;
+  for (std::uint32_t& scan : cloud.scan) {
+    const auto found = position.find(scan);
+    if (found == position.end())
+      throw Error(fmt::format("cloud.ply: there is no scan {}, which a point is of", scan));
+    scan = found->second;
+  }
+  return cloud;
 }
 
 }  // namespace planum

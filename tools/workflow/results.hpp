@@ -65,6 +65,7 @@ struct Relaxed {
 
 /// Where the scans are in the world of all results; part of what `cloud` makes.
 struct World {
+  std::vector<std::uint32_t> numbers;        ///< of the scans, ascending or not, each once
   std::vector<Pose> odometry;                ///< world_from_scan, as the poses came
   std::vector<Pose> poses;                   ///< world_from_scan, as they are now
   std::vector<std::uint8_t> is_mapped;       ///< for each scan; others hang on nothing
@@ -106,5 +107,12 @@ void write_result(const std::filesystem::path& file, const T& result);
 
 /// Where the scans of a world were taken, as functions of clouds want it.
 std::vector<Eigen::Vector3d> scan_origins(const World& world);
+
+/// A cloud whose points know their scans by position, as one that people and programs join with
+/// trajectory.tum: by number. Nothing changes where scans are numbered from 0 without gaps.
+Cloud with_scan_numbers(Cloud cloud, const World& world);
+
+/// The way back.
+Cloud with_scan_positions(Cloud cloud, const World& world);
 
 }  // namespace planum

@@ -72,7 +72,7 @@ Manifest redo(const Stage& stage, Manifest manifest, const std::optional<Manifes
   const auto start = std::chrono::steady_clock::now();
   const fs::path staging = session.layout.staging();
   const fs::path result = CacheLayout{staging}.result(stage.name);
-  UnitCache units(session.layout.units(stage.name));
+  UnitCache units(session.layout.units(stage.name), !session.options.force);
   fs::remove_all(staging);
   make_directories(result.parent_path());
   make_directories(session.layout.manifest(stage.name).parent_path());

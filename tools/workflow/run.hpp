@@ -16,7 +16,7 @@ namespace planum {
 struct RunOptions {
   std::string from = "import";
   std::string until = "report";
-  bool force = false;  ///< redo them even if they are fresh
+  bool force = false;  ///< redo them even if they are fresh, with all their parts
 };
 
 /// What a run tells whoever started it; every function may be missing.

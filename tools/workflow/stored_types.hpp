@@ -39,7 +39,7 @@ void fields(Archive& archive, Alignment& alignment) {
 
 template <class Archive>
 void fields(Archive& archive, SequenceStep& step) {
-  archive(step.alignment, step.matched, step.reason);
+  archive(step.alignment, step.odometry_information, step.matched, step.reason);
 }
 
 template <class Archive>
@@ -65,8 +65,8 @@ void fields(Archive& archive, Imported& imported) {
 
 template <class Archive>
 void fields(Archive& archive, Edge& edge) {
-  archive(edge.from, edge.to, edge.from_from_to, edge.information, edge.rms, edge.overlap,
-          edge.kind, edge.accepted, edge.matched, edge.reason);
+  archive(edge.from, edge.to, edge.from_from_to, edge.information, edge.odometry_information,
+          edge.rms, edge.overlap, edge.kind, edge.accepted, edge.matched, edge.reason);
 }
 
 template <class Archive>
@@ -82,7 +82,7 @@ void fields(Archive& archive, Relaxed& relaxed) {
 
 template <class Archive>
 void fields(Archive& archive, World& world) {
-  archive(world.odometry, world.poses, world.is_mapped, world.world_from_input,
+  archive(world.numbers, world.odometry, world.poses, world.is_mapped, world.world_from_input,
           world.up_confidence);
 }
 

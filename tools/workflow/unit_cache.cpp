@@ -36,7 +36,8 @@ std::optional<std::string> read_unit(const std::filesystem::path& file) {
 
 }  // namespace
 
-UnitCache::UnitCache(std::filesystem::path directory) : directory_(std::move(directory)) {}
+UnitCache::UnitCache(std::filesystem::path directory, bool reuse)
+    : directory_(std::move(directory)), reuse_(reuse) {}
 
 std::filesystem::path UnitCache::file(const std::string& unit) const {
   return directory_ / (unit + ".unit");
@@ -49,6 +50,7 @@ std::optional<std::string> UnitCache::read(const std::string& unit) const {
 }
 
 std::optional<std::string> UnitCache::find(const std::string& unit, const Digest& key) {
+  if (!reuse_) return std::nullopt;
   auto stored = read_unit(file(unit));
   if (!stored || key_bytes(key) != std::string_view(*stored).substr(0, sizeof(Digest))) {
     return std::nullopt;

@@ -16,7 +16,8 @@ namespace planum {
 /// Any number of threads may use it.
 class UnitCache {
  public:
-  explicit UnitCache(std::filesystem::path directory);
+  /// `reuse`: false does everything anew; what was there is found no more.
+  explicit UnitCache(std::filesystem::path directory, bool reuse = true);
 
   /// The stored bytes of a unit, if it was done before with the same key and is undamaged.
   std::optional<std::string> find(const std::string& unit, const Digest& key);
@@ -34,6 +35,7 @@ class UnitCache {
 
  private:
   std::filesystem::path directory_;
+  bool reuse_;
   std::mutex mutex_;
   std::set<std::string> used_;
 };

@@ -1,9 +1,12 @@
+#include <algorithm>
+#include <cstdio>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "slam/core/kd_tree.hpp"
 #include "slam/io/ply.hpp"
 #include "slam/io/tum.hpp"
+#include "tests/support/surface_distance.hpp"
 #include "tests/tools/planum/program.hpp"
 
 namespace planum::testing {
@@ -25,19 +28,23 @@ std::filesystem::path mapped(const std::filesystem::path& data, const std::strin
   return directory / "out";
 }
 
-/// m, how far the vertices of one mesh are from their nearest in the other, on average.
-double mean_distance(const TriangleMesh& from, const TriangleMesh& to) {
-  const KdTree tree(to.vertices);
-  double sum = 0;
-  for (const Eigen::Vector3f& vertex : from.vertices) {
-    const auto near = tree.nearest(vertex, 10);
-    sum += near ? std::sqrt(double{near->squared_distance}) : 10.0;
-  }
-  return sum / static_cast<double>(from.vertices.size());
+/// Of places on a surface, how far they are from another one.
+struct Distances {
+  double median = 0, within_1_mm = 0;
+};
+
+Distances distances(const char* what, const TriangleMesh& from, const TriangleMesh& to) {
+  const std::vector<double> all = surface_distances(from, to, 1000);
+  const auto near = std::lower_bound(all.begin(), all.end(), 0.001) - all.begin();
+  const Distances result{all[all.size() / 2],
+                         static_cast<double>(near) / static_cast<double>(all.size())};
+  std::printf("%s: median %.2f mm, %.0f %% within 1 mm\n", what, 1000 * result.median,
+              100 * result.within_1_mm);
+  return result;
 }
 
-// The aim is 1 mm everywhere. Registration still amplifies the 0.05 mm between the two forms of the
-// scans to several millimetres along the corridor, its weak direction (docs/benchmarks.md).
+// The two forms of the scans differ by up to 0.055 mm (rounding), their points scatter by 24 mm
+// about their planes. docs/benchmarks.md says how far that goes.
 TEST(RealData, GivesTheSameMapFromPointsAndFromRawSlices) {
   PLANUM_SHARED_DATASET(data, "kurt3d_corridor");
   const TemporaryDirectory directory;
@@ -47,15 +54,17 @@ TEST(RealData, GivesTheSameMapFromPointsAndFromRawSlices) {
   ASSERT_EQ(a.size(), 3u);
   ASSERT_EQ(b.size(), 3u);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_LT((a[i].pose.translation() - b[i].pose.translation()).norm(), 0.02) << i;
-    EXPECT_LT(rotation_angle(a[i].pose, b[i].pose), radians(0.2)) << i;
+    const double shift = (a[i].pose.translation() - b[i].pose.translation()).norm();
+    const double turn = rotation_angle(a[i].pose, b[i].pose);
+    std::printf("scan %zu: %.2f mm, %.4f deg\n", i, 1000 * shift, degrees(turn));
+    EXPECT_LT(shift, 0.001) << i;
+    EXPECT_LT(turn, radians(0.03)) << i;
   }
-  const TriangleMesh map_a = read_ply_mesh(points / "map.ply"),
-                     map_b = read_ply_mesh(slices / "map.ply");
-  const double forth = mean_distance(map_a, map_b), back = mean_distance(map_b, map_a);
-  std::printf("maps differ by %.3f and %.3f mm on average\n", 1000 * forth, 1000 * back);
-  EXPECT_LT(forth, 0.03);
-  EXPECT_LT(back, 0.03);
+  for (const char* file : {"mesh.ply", "map.ply"}) {
+    const TriangleMesh one = read_ply_mesh(points / file), other = read_ply_mesh(slices / file);
+    EXPECT_LT(distances(file, one, other).median, 0.001) << file;
+    EXPECT_LT(distances(file, other, one).median, 0.001) << file;
+  }
 }
 
 TEST(RealData, FindsTheClassroomOfThePaper) {

@@ -35,6 +35,16 @@ TEST(UnitCache, TakesADamagedUnitForNone) {
   EXPECT_FALSE(cache.find("scan000", key));
 }
 
+TEST(UnitCache, FindsNothingWhereAllIsToBeDoneAnew) {
+  const testing::TemporaryDirectory directory;
+  UnitCache(directory / "units").store("scan000", key, "before");
+  UnitCache cache(directory / "units", false);
+  EXPECT_FALSE(cache.find("scan000", key));
+  cache.store("scan000", key, "after");
+  cache.remove_unused();
+  EXPECT_EQ(UnitCache(directory / "units").find("scan000", key), "after");
+}
+
 TEST(UnitCache, RemovesWhatWasNotUsed) {
   const testing::TemporaryDirectory directory;
   UnitCache(directory / "units").store("old", key, "1");

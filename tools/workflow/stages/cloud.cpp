@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "meshing/level_planes.hpp"
 #include "meshing/normals.hpp"
 #include "meshing/up_direction.hpp"
 #include "slam/io/frames.hpp"
@@ -15,7 +16,10 @@ namespace {
 
 World unlevelled_world(const Imported& imported, const Relaxed& relaxed) {
   World world;
-  for (const Scan& scan : imported.scans) world.odometry.push_back(scan.world_from_scan);
+  for (const Scan& scan : imported.scans) {
+    world.numbers.push_back(static_cast<std::uint32_t>(scan.number));
+    world.odometry.push_back(scan.world_from_scan);
+  }
   world.poses = relaxed.graph.poses;
   world.is_mapped.assign(world.poses.size(), 0);
   for (const std::size_t scan : relaxed.components.front()) world.is_mapped[scan] = 1;
@@ -39,7 +43,8 @@ bool level(World& world, Cloud& cloud) {
   const auto found = estimate_up(cloud.normals, {}, Eigen::Vector3d::UnitZ());
   if (!found) return false;
   const Eigen::Vector3d pivot = world.odometry.front().translation();
-  const auto turn = Eigen::Quaterniond::FromTwoVectors(found->up, Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d up = up_of_planes(cloud, found->up);
+  const auto turn = Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ());
   world.world_from_input = Eigen::Translation3d(pivot) * turn * Eigen::Translation3d(-pivot);
   world.up_confidence = found->confidence;
   cloud = transformed(cloud, world.world_from_input);
@@ -100,7 +105,7 @@ void work(StageContext& context) {
     context.record.warnings.push_back(
         "no floor or ceiling was found, so the world is not levelled");
   }
-  write_ply(context.staging / "cloud.ply", cloud);
+  write_ply(context.staging / "cloud.ply", with_scan_numbers(cloud, world));
   write_poses(context, imported, world);
   write_result(context.result, world);
   context.record.summary =
@@ -114,7 +119,7 @@ void work(StageContext& context) {
 
 Stage cloud_stage() {
   return {.name = "cloud",
-          .version = 1,
+          .version = 2,
           .unit = "steps",
           .needs = {"import", "register", "relax"},
           .parameters = {"world", "cloud"},

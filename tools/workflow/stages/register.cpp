@@ -82,7 +82,7 @@ void work(StageContext& context) {
 
 Stage register_stage() {
   return {.name = "register",
-          .version = 1,
+          .version = 2,
           .unit = "pairs",
           .needs = {"import"},
           .parameters = {"registration"},

@@ -12,23 +12,6 @@
 namespace planum {
 namespace {
 
-/// The poses after matching in order, and one edge a step.
-PoseGraph graph_of(const SequenceMatch& match) {
-  PoseGraph graph{match.poses, {}};
-  for (std::size_t i = 0; i < match.steps.size(); ++i) {
-    const SequenceStep& step = match.steps[i];
-    graph.edges.push_back({.from = i,
-                           .to = i + 1,
-                           .from_from_to = step.alignment.target_from_source,
-                           .information = step.alignment.information,
-                           .rms = step.alignment.rms,
-                           .overlap = step.alignment.overlap,
-                           .matched = step.matched,
-                           .reason = step.reason});
-  }
-  return graph;
-}
-
 /// Scans that hang together, the largest group first.
 std::vector<std::vector<std::size_t>> groups_of(const PoseGraph& graph) {
   auto groups = components(graph).members();
@@ -84,7 +67,7 @@ void work(StageContext& context) {
   const Settings& settings = context.project.settings;
   const Imported& imported = context.results.imported.get();
   Relaxed result;
-  result.graph = graph_of(context.results.registered.get());
+  result.graph = pose_graph(context.results.registered.get());
   if (settings.relaxation_method == "none" || settings.registration_method == "none") {
     context.record.summary = "the poses stay as they are";
   } else {
@@ -106,7 +89,7 @@ void work(StageContext& context) {
 
 Stage relax_stage() {
   return {.name = "relax",
-          .version = 1,
+          .version = 2,
           .unit = "steps",
           .needs = {"import", "register"},
           .parameters = {"registration", "loops", "relaxation"},
