@@ -83,13 +83,16 @@ TEST(RelaxLuMilios, BringsShakenScansTogether) {
   }
 }
 
+// Points that pair with points are drawn to the sampling of the other scan, here 5 cm.
 TEST(RelaxLuMilios, WorksPointToPointToo) {
   std::mt19937 random(2);
   const Walk& w = walk();
-  const PoseGraph graph = shaken_graph(w.truth, random, 0.04, radians(0.7));
+  const PoseGraph graph = shaken_graph(w.truth, random, 0.08, radians(1.5));
   const GraphResult result = relax_lu_milios(
       graph, w.scans, {.pairing = Pairing::point_to_point, .last_gate = 0.1, .max_iterations = 80});
-  expect_truth(result, w.truth, 0.02, 0.5);
+  EXPECT_TRUE(result.converged);
+  EXPECT_LT(result.residual_after, result.residual_before);
+  expect_truth(result, w.truth, 0.05, 1.2);
 }
 
 TEST(RelaxLuMilios, MovesWithTheWorld) {

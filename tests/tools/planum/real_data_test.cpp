@@ -34,7 +34,7 @@ struct Distances {
 };
 
 Distances distances(const char* what, const TriangleMesh& from, const TriangleMesh& to) {
-  const std::vector<double> all = surface_distances(from, to, 1000);
+  const std::vector<double> all = surface_distances(from, to, 300);
   const auto near = std::lower_bound(all.begin(), all.end(), 0.001) - all.begin();
   const Distances result{all[all.size() / 2],
                          static_cast<double>(near) / static_cast<double>(all.size())};
