@@ -1,0 +1,104 @@
+// kurt3d_corridor from starts that are 25 cm and 5 degrees off in random directions: how far the
+// poses end from the reference of the data's README, and how long a match takes.
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <random>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "slam/graph/pose_graph.hpp"
+#include "slam/graph/relax_lu_milios.hpp"
+#include "slam/io/uos.hpp"
+#include "slam/registration/sequence.hpp"
+#include "slam/sensor/range_limits.hpp"
+
+namespace {
+
+using namespace planum;
+
+Pose uos_pose(const Eigen::Vector3d& cm, const Eigen::Vector3d& deg) {
+  Eigen::Matrix4d transform = Eigen::Matrix4d::Identity();
+  transform.topLeftCorner<3, 3>() = (Eigen::AngleAxisd(radians(deg.x()), Eigen::Vector3d::UnitX()) *
+                                     Eigen::AngleAxisd(radians(deg.y()), Eigen::Vector3d::UnitY()) *
+                                     Eigen::AngleAxisd(radians(deg.z()), Eigen::Vector3d::UnitZ()))
+                                        .toRotationMatrix();
+  transform.topRightCorner<3, 1>() = cm;
+  return pose_from_uos(transform);
+}
+
+Pose random_motion(std::mt19937& random, double shift, double turn) {
+  std::normal_distribution<double> normal;
+  const auto direction = [&] {
+    return Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+  };
+  Pose motion(Eigen::AngleAxisd(turn, direction()));
+  motion.translation() = shift * direction();
+  return motion;
+}
+
+/// Shifts, turns and times of many starts.
+struct Figures {
+  std::vector<double> shifts, turns, seconds;
+
+  void print(const char* what) {
+    for (auto* values : {&shifts, &turns, &seconds}) std::sort(values->begin(), values->end());
+    fmt::print(
+        "{:28} median {:5.1f} mm {:5.3f} deg, worst {:5.1f} mm {:5.3f} deg, {:6.1f} ms ({} runs)\n",
+        what, 1000 * shifts[shifts.size() / 2], turns[turns.size() / 2], 1000 * shifts.back(),
+        turns.back(), 1000 * seconds[seconds.size() / 2], shifts.size());
+  }
+
+  void add(const Pose& found, const Pose& truth, double time) {
+    shifts.push_back((found.translation() - truth.translation()).norm());
+    turns.push_back(degrees(rotation_angle(found, truth)));
+    seconds.push_back(time);
+  }
+};
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+int main() {
+  const auto folder =
+      std::filesystem::path(PLANUM_SOURCE_DIR).parent_path() / "shared/datasets/kurt3d_corridor";
+  std::vector<MatchingScan> scans;
+  std::vector<Pose> given;
+  for (const std::string name : {"scan000", "scan001", "scan002"}) {
+    scans.push_back(matching_scan(limited(read_uos_scan(folder / (name + ".3d"))).cloud));
+    given.push_back(read_uos_pose(folder / (name + ".pose")));
+  }
+  const std::vector<Pose> reference = {
+      Pose::Identity(), uos_pose({-3.809, -5.898, 156.411}, {1.308, -0.828, -0.516}),
+      uos_pose({-8.262, -13.725, 339.371}, {0.367, -0.488, -0.309})};
+  std::mt19937 random(1);
+  Figures pairs[2], graphs[2];
+  for (int start = 0; start < 50; ++start) {
+    std::vector<Pose> odometry = given;
+    for (std::size_t i = 1; i < odometry.size(); ++i)
+      odometry[i] = odometry[i - 1] * given[i - 1].inverse() * given[i] *
+                    random_motion(random, 0.25, radians(5));
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double begin = now();
+      const Alignment found =
+          align(scans[i + 1], scans[i], odometry[i].inverse() * odometry[i + 1]);
+      pairs[i].add(found.target_from_source, reference[i].inverse() * reference[i + 1],
+                   now() - begin);
+    }
+    const double begin = now();
+    const PoseGraph graph = pose_graph(match_in_order(odometry, icp_matcher(scans)));
+    const std::vector<Pose> poses = relax_lu_milios(graph, scans).graph.poses;
+    const double time = now() - begin;
+    for (std::size_t i = 0; i < 2; ++i)
+      graphs[i].add(poses[i].inverse() * poses[i + 1], reference[i].inverse() * reference[i + 1],
+                    time);
+  }
+  pairs[0].print("scan 1 against 0");
+  pairs[1].print("scan 2 against 1");
+  graphs[0].print("all relaxed, 0 to 1");
+  graphs[1].print("all relaxed, 1 to 2");
+}
