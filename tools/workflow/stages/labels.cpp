@@ -47,8 +47,12 @@ std::string summary(const Labelled& labelled) {
 void work(StageContext& context) {
   const PolygonMap& map = context.results.polygons.get();
   Labelled labelled;
+  constexpr std::size_t steps = 3;
+  context.progress.report(0, steps);
   labelled.labels = label(map, context.project.settings.labels);
+  context.progress.report(1, steps);
   labelled.rooms = rooms_of(labelled.labels, map, context);
+  context.progress.report(2, steps);
   write_result(context.result, labelled);
   context.record.summary = summary(labelled);
   context.results.labelled.set(std::move(labelled));

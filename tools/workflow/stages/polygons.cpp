@@ -39,9 +39,13 @@ std::string summary(const PolygonMap& map) {
 void work(StageContext& context) {
   const Settings& settings = context.project.settings;
   const TriangleMesh& mesh = context.results.mesh.get();
+  constexpr std::size_t steps = 3;
+  context.progress.report(0, steps);
   const Regions regions =
       grow_planes(mesh, context.results.cloud.get(), chosen_region_params(settings));
+  context.progress.report(1, steps);
   PolygonMap map = polygonize(mesh, regions, chosen_polygon_params(settings));
+  context.progress.report(2, steps);
   if (map.polygons.empty()) {
     throw Error(
         "there is no plane in the mesh; a larger mesh.voxel_m or a smaller "
