@@ -7,16 +7,17 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/registration/minimizers.hpp"
 #include "slam/registration/normal_equations.hpp"
-#include "slam/registration/point_to_point.hpp"
 
 namespace planum {
 namespace {
 
 /// While the gate is wider than this many last gates, few points show the way well enough.
 constexpr double coarse_gates = 4;
-/// A gate before the last is done when a step is less than this much of it.
-constexpr double step_per_gate = 0.05;
+/// A gate before the last is done when a step is less than this much of it; pairs of points take
+/// many small steps.
+constexpr double step_per_gate = 0.05, point_step_per_gate = 0.005;
 /// Searches reach at least so many point spacings, or sparse parts of the target have no pairs.
 constexpr double search_per_spacing = 4;
 
@@ -29,6 +30,7 @@ void check(const IcpParams& params, const Pose& guess) {
           params.first_gate, "> 0 m");
   require(params.last_gate >= 0 && params.last_gate <= params.first_gate, "last_gate",
           params.last_gate, "between 0 and first_gate");
+  require(params.point_gate >= 0, "point_gate", params.point_gate, ">= 0 m");
   require(params.gate_factor > 0 && params.gate_factor < 1, "gate_factor", params.gate_factor,
           "between 0 and 1");
   require(params.max_normal_angle > 0 && params.max_normal_angle <= pi, "max_normal_angle",
@@ -85,21 +87,23 @@ class Matching {
   /// Iterates at one gate; false if there are too few pairs.
   bool run_gate(PairFinder& finder, double gate, bool last, Alignment& result) {
     const PairGate pair_gate = icp_gate(gate, spacing_, params_.max_normal_angle);
+    const bool points =
+        params_.pairing == Pairing::point_to_point || (!last && gate > params_.point_gate);
+    const Pairing pairing = points ? Pairing::point_to_point : params_.pairing;
+    const double rest = gate * (points ? point_step_per_gate : step_per_gate);
     for (int i = 0; i < params_.max_iterations; ++i) {
-      const std::vector<Pair> pairs =
-          finder.find(result.target_from_source, params_.pairing, pair_gate);
+      const std::vector<Pair> pairs = finder.find(result.target_from_source, pairing, pair_gate);
       if (pairs.size() < params_.min_pairs) return false;
-      const NormalEquations equations = normal_equations(pairs, params_.pairing);
+      const NormalEquations equations = normal_equations(pairs, pairing);
       const Determined system = determined(equations);
-      const Pose motion = params_.pairing == Pairing::point_to_point
-                              ? closed_form_motion(pairs)
-                              : determined_motion(equations, system, result.target_from_source);
+      const Pose motion = points ? rigid_motion(pairs, params_.minimizer)
+                                 : determined_motion(equations, system, result.target_from_source);
       result.target_from_source = orthonormalized(motion * result.target_from_source);
       ++result.iterations;
       const double moved = displacement(motion, equations);
       result.converged = last && moved < params_.tolerance * noise_;
       if (last) note_quality(equations, system, finder, result);
-      if (result.converged || (!last && moved < step_per_gate * gate)) break;
+      if (result.converged || (!last && moved < rest)) break;
     }
     return true;
   }

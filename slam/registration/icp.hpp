@@ -4,14 +4,18 @@
 
 #include "slam/core/pose.hpp"
 #include "slam/registration/matching_scan.hpp"
+#include "slam/registration/minimizers.hpp"
 #include "slam/registration/pairing.hpp"
 
 namespace planum {
 
 struct IcpParams {
   Pairing pairing = Pairing::point_to_plane;
-  double first_gate = 1.0;   ///< m, how far apart the points of a pair may be at first
+  Minimizer minimizer = Minimizer::svd;  ///< of pairs of points
+  double first_gate = 1.0;               ///< m, how far apart the points of a pair may be at first
   double last_gate = 0;      ///< m, the same at last; 0: ten times the noise of the two scans
+  double point_gate = 1.2;   ///< m, wider gates pair points with points, whatever the pairing:
+                             ///< slower than planes, but from farther away
   double gate_factor = 0.5;  ///< each gate is this much of the one before
   double max_normal_angle = radians(45);  ///< rad, pairs whose surfaces face more apart are dropped
   int max_iterations = 30;                ///< at each gate
