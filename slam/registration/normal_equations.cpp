@@ -84,9 +84,48 @@ NormalEquations point_to_point_equations(std::span<const Pair> pairs) {
   return result;
 }
 
+NormalEquations plane_to_plane_equations(std::span<const Pair> pairs) {
+  NormalEquations result = summary(pairs);
+  for (const Pair& pair : pairs) {
+    const Eigen::Vector3d residual = pair.source - pair.target;
+    Eigen::Matrix<double, 3, 6> derivative;
+    derivative << Eigen::Matrix3d::Identity(), -skew(pair.source - result.centre);
+    const Eigen::Matrix3d metric = pair.weight * pair_metric(pair);
+    const Eigen::Matrix<double, 6, 3> weighted = derivative.transpose() * metric;
+    result.hessian.noalias() += weighted * derivative;
+    result.gradient += weighted * residual;
+    result.squared_residuals += residual.dot(metric * residual);
+  }
+  return result;
+}
+
+NormalEquations symmetric_equations(std::span<const Pair> pairs) {
+  NormalEquations result = summary(pairs);
+  for (const Pair& pair : pairs) {
+    const double residual = pair.normal.dot(pair.source - pair.target);
+    const Eigen::Vector3d middle = 0.5 * (pair.source + pair.target);
+    Vector6d derivative;
+    derivative << pair.normal, (middle - result.centre).cross(pair.normal);
+    const Vector6d weighted = pair.weight * derivative;
+    result.hessian.noalias() += weighted * derivative.transpose();
+    result.gradient += weighted * residual;
+    result.squared_residuals += pair.weight * residual * residual;
+  }
+  return result;
+}
+
 NormalEquations normal_equations(std::span<const Pair> pairs, Pairing pairing) {
-  return pairing == Pairing::point_to_plane ? point_to_plane_equations(pairs)
-                                            : point_to_point_equations(pairs);
+  switch (pairing) {
+    case Pairing::point_to_point:
+      return point_to_point_equations(pairs);
+    case Pairing::point_to_plane:
+      return point_to_plane_equations(pairs);
+    case Pairing::plane_to_plane:
+      return plane_to_plane_equations(pairs);
+    case Pairing::symmetric:
+      return symmetric_equations(pairs);
+  }
+  return {};
 }
 
 Determined determined(const NormalEquations& equations) {

@@ -31,6 +31,13 @@ NormalEquations point_to_plane_equations(std::span<const Pair> pairs);
 /// Point to point: residual p - q, derivative M = [I, -skew(p - c)] (Lu & Milios 1997, in 3D).
 NormalEquations point_to_point_equations(std::span<const Pair> pairs);
 
+/// Plane to plane: residual p - q as point to point, measured by pair_metric() (Segal et al. 2009).
+NormalEquations plane_to_plane_equations(std::span<const Pair> pairs);
+
+/// Symmetric: residual n.(p - q) with n along the mean of both normals; turned half on either side,
+/// so that the derivative is [n, (m - c) x n] with the middle m of p and q (Rusinkiewicz 2019).
+NormalEquations symmetric_equations(std::span<const Pair> pairs);
+
 NormalEquations normal_equations(std::span<const Pair> pairs, Pairing pairing);
 
 /// What the pairs determine. A direction in which the mean square derivative of the residuals

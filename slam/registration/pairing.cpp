@@ -5,6 +5,8 @@
 #include <numeric>
 #include <optional>
 
+#include <Eigen/LU>
+
 #include "slam/core/parallel.hpp"
 
 namespace planum {
@@ -32,30 +34,72 @@ std::uint64_t rank_of_place(const Eigen::Vector3f& point) {
   return hash;
 }
 
+/// A point that looks for its pair, in the target's frame.
+struct Seeker {
+  Eigen::Vector3d point;
+  Eigen::Vector3f normal;  ///< zero: unknown
+  float tilt_variance;
+};
+
+/// The surface of the target around the point that was found.
+struct Found {
+  Eigen::Vector3f point, smoothed;
+  const LocalPlane& plane;
+};
+
+std::optional<Pair> planar_pair(const Seeker& seeker, const Found& found, Pairing pairing) {
+  if (!found.plane.known()) return std::nullopt;
+  Pair pair{.source = seeker.point,
+            .target = found.plane.mean.cast<double>(),
+            .normal = found.plane.normal.cast<double>(),
+            .tilt_variance = found.plane.tilt_variance};
+  if (pairing == Pairing::point_to_plane) return pair;
+  if (seeker.normal.isZero()) return std::nullopt;
+  pair.target = found.smoothed.cast<double>();
+  pair.source_normal = seeker.normal.cast<double>();
+  pair.tilt_variance = (found.plane.tilt_variance + seeker.tilt_variance) / 4;
+  if (pairing == Pairing::symmetric) pair.normal = (pair.normal + pair.source_normal).normalized();
+  return pair;
+}
+
+double residual_of(const Pair& pair, Pairing pairing) {
+  const Eigen::Vector3d offset = pair.source - pair.target;
+  if (pairing != Pairing::plane_to_plane) return pair.normal.dot(offset);
+  return std::sqrt(std::max(0.0, offset.dot(pair_metric(pair) * offset)));
+}
+
 /// Tests the candidate pair of one point; empty if a gate drops it.
-std::optional<Pair> tested(const Eigen::Vector3d& point, const Eigen::Vector3f& normal,
-                           const Eigen::Vector3f& nearest, const LocalPlane& plane, Pairing pairing,
+std::optional<Pair> tested(const Seeker& seeker, const Found& found, Pairing pairing,
                            const PairGate& gate, float least_cosine) {
-  if (plane.known() && !normal.isZero() && normal.dot(plane.normal) < least_cosine)
+  if (found.plane.known() && !seeker.normal.isZero() &&
+      seeker.normal.dot(found.plane.normal) < least_cosine)
     return std::nullopt;
-  Pair pair{.source = point,
-            .target = nearest.cast<double>(),
-            .normal = plane.normal.cast<double>(),
-            .tilt_variance = plane.tilt_variance};
-  if (pairing == Pairing::point_to_point) return pair;
-  if (!plane.known()) return std::nullopt;
-  pair.target = plane.mean.cast<double>();
-  const Eigen::Vector3d offset = point - pair.target;
-  const double residual = pair.normal.dot(offset);
-  const double along_squared = offset.squaredNorm() - residual * residual;
-  const double reach = std::max<double>(plane.reach, gate.residual);
-  pair.weight = biweight(residual, gate.residual);
+  if (pairing == Pairing::point_to_point)
+    return Pair{.source = seeker.point,
+                .target = found.point.cast<double>(),
+                .normal = found.plane.normal.cast<double>(),
+                .tilt_variance = found.plane.tilt_variance};
+  std::optional<Pair> pair = planar_pair(seeker, found, pairing);
+  if (!pair) return std::nullopt;
+  pair->weight = biweight(residual_of(*pair, pairing), gate.residual);
+  const Eigen::Vector3d offset = seeker.point - found.plane.mean.cast<double>();
+  const double across = found.plane.normal.cast<double>().dot(offset);
+  const double reach = std::max<double>(found.plane.reach, gate.residual);
   // Beyond its patch a plane says nothing about the surface.
-  if (pair.weight == 0 || along_squared > reach * reach) return std::nullopt;
+  if (pair->weight == 0 || offset.squaredNorm() - across * across > reach * reach)
+    return std::nullopt;
   return pair;
 }
 
 }  // namespace
+
+Eigen::Matrix3d pair_metric(const Pair& pair) {
+  constexpr double across = 1e-3;  // variance across a plane, where that along it is 1
+  const auto covariance = [](const Eigen::Vector3d& normal) -> Eigen::Matrix3d {
+    return Eigen::Matrix3d::Identity() - (1 - across) * normal * normal.transpose();
+  };
+  return 2 * across * (covariance(pair.normal) + covariance(pair.source_normal)).inverse();
+}
 
 PairFinder::PairFinder(const MatchingScan& source, const MatchingScan& target,
                        std::vector<std::uint32_t> selection)
@@ -86,10 +130,11 @@ std::vector<Pair> PairFinder::find(const Pose& target_from_source, Pairing pairi
           target_.tree.nearest(point.cast<float>(), static_cast<float>(gate.distance), hint);
       last_leaf = hint;
       if (!nearest) continue;
-      const Eigen::Vector3f normal = rotation * source_.planes[s].normal;
-      if (const std::optional<Pair> pair =
-              tested(point, normal, target_.points[nearest->index], target_.planes[nearest->index],
-                     pairing, gate, least_cosine))
+      const Seeker seeker{point, rotation * source_.planes[s].normal,
+                          source_.planes[s].tilt_variance};
+      const Found found_point{target_.points[nearest->index], target_.smoothed(nearest->index),
+                              target_.planes[nearest->index]};
+      if (const auto pair = tested(seeker, found_point, pairing, gate, least_cosine))
         pairs.push_back(*pair);
     }
   });

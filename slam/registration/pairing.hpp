@@ -15,12 +15,14 @@ namespace planum {
 enum class Pairing {
   point_to_point,  ///< the nearest point of the target (Besl & McKay 1992)
   point_to_plane,  ///< the local plane of that point (Chen & Medioni 1992)
+  plane_to_plane,  ///< as uncertain along both local planes (GICP: Segal, Haehnel & Thrun 2009)
+  symmetric,       ///< along the mean of both normals (Rusinkiewicz 2019)
 };
 
 /// Which pairs are taken.
 struct PairGate {
-  double distance = 0;  ///< m, to the nearest target point
-  double residual = 0;  ///< m, to the local plane (point_to_plane only); weight 0 is reached here
+  double distance = 0;          ///< m, to the nearest target point
+  double residual = 0;          ///< m, not for point_to_point; weight 0 is reached here
   double max_normal_angle = 0;  ///< rad, pairs whose surfaces face more apart are dropped
 };
 
@@ -30,8 +32,13 @@ struct Pair {
   Eigen::Vector3d target;  ///< m, the nearest point, or a point on its local plane
   Eigen::Vector3d normal;  ///< unit, of the local plane; zero in point_to_point where unknown
   double weight = 1;
-  double tilt_variance = 0;  ///< rad^2, of the normal
+  double tilt_variance = 0;                                 ///< rad^2, of the normal
+  Eigen::Vector3d source_normal = Eigen::Vector3d::Zero();  ///< unit; zero where it does not enter
 };
+
+/// The inverse covariance of the distance of a plane_to_plane pair (GICP), scaled so that it is
+/// n n^T plus a thousandth of the rest where both normals are n.
+Eigen::Matrix3d pair_metric(const Pair& pair);
 
 /// Finds pairs again and again while a source moves towards its target; remembers where in the
 /// tree each point ended, so that the next search is short.

@@ -8,7 +8,7 @@ namespace planum {
 namespace {
 
 /// Grows when matching gives other results from the same scans and parameters.
-constexpr int matching_version = 1;
+constexpr int matching_version = 2;
 
 }  // namespace
 
@@ -16,6 +16,7 @@ PairMatching::PairMatching(Results& results, const Settings& settings, UnitCache
                            const Progress& progress)
     : results_(results), units_(units), icp_(settings.icp), progress_(progress) {
   icp_.pairing = pairing_of(settings);
+  icp_.minimizer = minimizer_of(settings);
   parameters_ = Hasher()
                     .value(matching_version)
                     .text(archived(settings.matching))

@@ -47,6 +47,7 @@ struct Settings {
 
   std::string registration_method = "icp";
   std::string pairing = "point-to-plane";
+  std::string minimizer = "svd";
   MatchingScanParams matching;
   IcpParams icp;
   SequenceParams sequence;
@@ -68,9 +69,8 @@ struct Settings {
   std::string output_directory = "out";
 };
 
-/// The pairing that a project file names.
-inline Pairing pairing_of(const Settings& settings) {
-  return settings.pairing == "point-to-point" ? Pairing::point_to_point : Pairing::point_to_plane;
-}
+/// The pairing and the minimizer that a project file names.
+Pairing pairing_of(const Settings& settings);
+Minimizer minimizer_of(const Settings& settings);
 
 }  // namespace planum

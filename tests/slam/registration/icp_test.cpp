@@ -47,6 +47,50 @@ TEST(Icp, RecoversAKnownMotionFromRandomStarts) {
   }
 }
 
+TEST(Icp, RecoversAKnownMotionByEveryPairingOfPlanes) {
+  const RoomPair pair = room_pair();
+  for (const Pairing pairing :
+       {Pairing::point_to_plane, Pairing::plane_to_plane, Pairing::symmetric}) {
+    std::mt19937 random(8);
+    for (int start = 0; start < 4; ++start) {
+      const Pose guess = pair.target_from_source * random_motion(random, 0.4, radians(10));
+      const Alignment alignment = align(pair.source, pair.target, guess, {.pairing = pairing});
+      EXPECT_TRUE(alignment.converged) << int(pairing);
+      EXPECT_LT(shift_between(alignment.target_from_source, pair.target_from_source), 0.004)
+          << int(pairing);
+      EXPECT_LT(rotation_angle(alignment.target_from_source, pair.target_from_source),
+                radians(0.1));
+    }
+  }
+}
+
+TEST(Icp, RecoversAKnownMotionByEveryMinimizer) {
+  const RoomPair pair = room_pair();
+  std::mt19937 random(9);
+  const Pose guess = pair.target_from_source * random_motion(random, 0.2, radians(4));
+  IcpParams params{
+      .pairing = Pairing::point_to_point, .last_gate = 0.1, .max_iterations = 100, .max_points = 0};
+  const Alignment expected = align(pair.source, pair.target, guess, params);
+  for (const Minimizer minimizer :
+       {Minimizer::quaternion, Minimizer::dual_quaternion, Minimizer::orthonormal, Minimizer::helix,
+        Minimizer::small_angle, Minimizer::lu_milios}) {
+    params.minimizer = minimizer;
+    const Alignment alignment = align(pair.source, pair.target, guess, params);
+    EXPECT_LT(shift_between(alignment.target_from_source, expected.target_from_source), 0.002)
+        << int(minimizer);
+  }
+}
+
+TEST(Icp, FindsItsWayFromFar) {
+  const RoomPair pair = room_pair();
+  std::mt19937 random(10);
+  for (int start = 0; start < 10; ++start) {
+    const Pose guess = pair.target_from_source * random_motion(random, 1.0, radians(15));
+    const Alignment alignment = align(pair.source, pair.target, guess, {.first_gate = 2.5});
+    EXPECT_LT(shift_between(alignment.target_from_source, pair.target_from_source), 0.003);
+  }
+}
+
 TEST(Icp, RecoversAKnownMotionPointToPoint) {
   const RoomPair pair = room_pair();
   std::mt19937 random(2);

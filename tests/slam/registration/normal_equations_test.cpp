@@ -19,20 +19,28 @@ std::vector<Pair> random_pairs(std::mt19937& random, std::size_t count) {
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector3d p = 3 * vector() + Eigen::Vector3d(5, -3, 1);
+    const Eigen::Vector3d n = vector().normalized();
     pairs.push_back({.source = p,
                      .target = p + 0.02 * vector(),
-                     .normal = vector().normalized(),
-                     .weight = weight(random)});
+                     .normal = n,
+                     .weight = weight(random),
+                     .source_normal = (n + 0.05 * vector()).normalized()});
   }
   return pairs;
 }
 
-double cost(const std::vector<Pair>& pairs, Pairing pairing, const Pose& motion) {
+/// What the equations stand for, with the sources moved (for symmetric, half of it on either side).
+double cost(const std::vector<Pair>& pairs, Pairing pairing, const Eigen::Vector3d& centre,
+            const Vector6d& twist) {
+  const Pose whole = motion_about(centre, twist), half = motion_about(centre, 0.5 * twist);
   double sum = 0;
   for (const Pair& pair : pairs) {
-    const Eigen::Vector3d gap = motion * pair.source - pair.target;
-    const double squared =
-        pairing == Pairing::point_to_plane ? std::pow(pair.normal.dot(gap), 2) : gap.squaredNorm();
+    const Eigen::Vector3d gap = whole * pair.source - pair.target;
+    double squared = gap.squaredNorm();
+    if (pairing == Pairing::point_to_plane) squared = std::pow(pair.normal.dot(gap), 2);
+    if (pairing == Pairing::plane_to_plane) squared = gap.dot(pair_metric(pair) * gap);
+    if (pairing == Pairing::symmetric)
+      squared = std::pow(pair.normal.dot(half * pair.source - half.inverse() * pair.target), 2);
     sum += pair.weight * squared;
   }
   return sum;
@@ -45,9 +53,10 @@ TEST_P(NormalEquationsOf, HaveTheDerivativesOfSmallMotions) {
   for (int draw = 0; draw < 5; ++draw) {
     const std::vector<Pair> pairs = random_pairs(random, 40);
     const NormalEquations equations = normal_equations(pairs, GetParam());
-    EXPECT_NEAR(equations.squared_residuals, cost(pairs, GetParam(), Pose::Identity()), 1e-12);
+    EXPECT_NEAR(equations.squared_residuals,
+                cost(pairs, GetParam(), equations.centre, Vector6d::Zero()), 1e-12);
     const auto moved_cost = [&](const Vector6d& twist) {
-      return cost(pairs, GetParam(), motion_about(equations.centre, twist));
+      return cost(pairs, GetParam(), equations.centre, twist);
     };
     constexpr double h = 1e-5;
     for (int i = 0; i < 6; ++i) {
@@ -82,7 +91,19 @@ TEST_P(NormalEquationsOf, AreEmptyWithoutPairs) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Registration, NormalEquationsOf,
-                         ::testing::Values(Pairing::point_to_point, Pairing::point_to_plane));
+                         ::testing::Values(Pairing::point_to_point, Pairing::point_to_plane,
+                                           Pairing::plane_to_plane, Pairing::symmetric));
+
+TEST(PairMetric, IsAlongTheNormalWhereBothAgree) {
+  std::mt19937 random(9);
+  for (Pair& pair : random_pairs(random, 20)) {
+    pair.source_normal = pair.normal;
+    const Eigen::Matrix3d metric = pair_metric(pair);
+    EXPECT_NEAR(pair.normal.dot(metric * pair.normal), 1, 1e-9);
+    const Eigen::Vector3d along = pair.normal.unitOrthogonal();
+    EXPECT_NEAR(along.dot(metric * along), 1e-3, 1e-9);
+  }
+}
 
 /// Pairs all over the planes given by their normals, one metre from the origin.
 std::vector<Pair> pairs_of_planes(const std::vector<Eigen::Vector3d>& normals, double gap) {
