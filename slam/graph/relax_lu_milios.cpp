@@ -50,7 +50,8 @@ class Relaxation {
   Relaxation(const PoseGraph& graph, std::span<const MatchingScan> scans,
              const LuMiliosParams& params, std::vector<Pose> poses)
       : graph_(graph), scans_(scans), params_(params), poses_(std::move(poses)) {
-    select(params.max_points);
+    for (std::size_t i = 0; i < scans.size(); ++i)
+      selections_.push_back(selection(i, params.max_points));
     for (const MatchingScan& scan : scans)
       if (scan.noise > 0) noise_ = noise_ == 0 ? scan.noise : std::min(noise_, scan.noise);
     noise_ = std::max(noise_, least_noise);
@@ -69,8 +70,7 @@ class Relaxation {
       result.converged = iterate(gate, last, progress, result);
       if (last) break;
     }
-    if (params_.max_points == 0 || params_.last_points == params_.max_points) return;
-    select(params_.last_points);
+    if (!select_more()) return;
     choose_links();
     result.converged = iterate(1, true, progress, result);
   }
@@ -89,11 +89,28 @@ class Relaxation {
   const std::vector<Pose>& poses() const { return poses_; }
 
  private:
-  /// Which points of each scan are looked at.
-  void select(std::size_t most) {
-    selections_.clear();
-    for (const MatchingScan& scan : scans_)
-      selections_.push_back(stable_selection(scan.points, most > 0 ? most : scan.points.size()));
+  /// At most so many points of a scan, evenly chosen; 0: all.
+  std::vector<std::uint32_t> selection(std::size_t scan, std::size_t most) const {
+    const std::vector<Eigen::Vector3f>& points = scans_[scan].points;
+    return stable_selection(points, most > 0 ? most : points.size());
+  }
+
+  /// Which points are looked at at last: a scan with few links needs more in each to be as well
+  /// placed. False if there are no more than before.
+  bool select_more() {
+    std::vector<std::size_t> links(scans_.size(), 0);
+    for (const ScanLink& link : links_) ++links[link.pair().first], ++links[link.pair().second];
+    bool more = false;
+    for (std::size_t i = 0; i < scans_.size(); ++i) {
+      if (links[i] == 0 || params_.max_points == 0) continue;
+      const std::size_t most = params_.last_points > 0
+                                   ? std::max(params_.max_points, params_.last_points / links[i])
+                                   : 0;
+      const std::size_t before = selections_[i].size();
+      selections_[i] = selection(i, most);
+      more = more || selections_[i].size() > before;
+    }
+    return more;
   }
 
   double last_gate(const ScanLink& link) const {

@@ -22,7 +22,8 @@ struct LuMiliosParams {
   double last_gate = 0;   ///< m, the same at last; 0: ten times the noise of two scans
   double max_normal_angle = radians(45);  ///< rad, pairs whose surfaces face more apart are dropped
   std::size_t max_points = 2000;          ///< of each scan in each link, evenly chosen; 0: all
-  std::size_t last_points = 10000;        ///< the same at last, when the poses hardly move any more
+  std::size_t last_points = 20000;  ///< at last, when the poses hardly move any more, so many are
+                                    ///< shared by the links of a scan; 0: all in each
   std::size_t min_pairs = 50;             ///< of a link; fewer say nothing
   int max_iterations = 30;                ///< at each gate
   double tolerance = 0.02;  ///< done when no pose moves more than this much of the noise

@@ -226,7 +226,7 @@ const std::vector<Key>& project_keys() {
        FIELD(std::size_t, relaxation.last_points),
        {0, 1e9},
        {},
-       "the same at last, when the poses hardly move any more"},
+       "of each scan at last, shared by its links, 0: all in each"},
       {"relaxation",
        "max_iterations",
        FIELD(int, relaxation.max_iterations),

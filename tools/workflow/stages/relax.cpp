@@ -89,7 +89,7 @@ void work(StageContext& context) {
 
 Stage relax_stage() {
   return {.name = "relax",
-          .version = 2,
+          .version = 3,
           .unit = "steps",
           .needs = {"import", "register"},
           .parameters = {"registration", "loops", "relaxation"},
