@@ -18,6 +18,24 @@ struct BlockMatrix {
   std::vector<double> off_diagonal;  ///< one block a pair: (first, second) of the pair
 
   void set_zero();
+
+  /// One of the blocks, as a fixed-size Matrix.
+  template <class Matrix>
+  Eigen::Map<Matrix> diagonal_block(std::size_t k) {
+    return Eigen::Map<Matrix>(diagonal.data() + k * Matrix::SizeAtCompileTime);
+  }
+  template <class Matrix>
+  Eigen::Map<const Matrix> diagonal_block(std::size_t k) const {
+    return Eigen::Map<const Matrix>(diagonal.data() + k * Matrix::SizeAtCompileTime);
+  }
+  template <class Matrix>
+  Eigen::Map<Matrix> off_diagonal_block(std::size_t k) {
+    return Eigen::Map<Matrix>(off_diagonal.data() + k * Matrix::SizeAtCompileTime);
+  }
+  template <class Matrix>
+  Eigen::Map<const Matrix> off_diagonal_block(std::size_t k) const {
+    return Eigen::Map<const Matrix>(off_diagonal.data() + k * Matrix::SizeAtCompileTime);
+  }
 };
 
 /// Sparse Cholesky factorization of a symmetric positive definite matrix of square blocks (2x2 to
@@ -25,8 +43,8 @@ struct BlockMatrix {
 /// bits for any number of threads.
 class BlockCholesky {
  public:
-  /// `pairs`: the off-diagonal blocks, each once.
-  BlockCholesky(std::size_t blocks, int block_size, std::span<const BlockPair> pairs);
+  /// The analysis may be shared. Blocks are 2x2, 3x3 or 6x6.
+  BlockCholesky(std::shared_ptr<const FrontTree> tree, int block_size);
 
   /// A zero matrix of the pattern.
   BlockMatrix matrix() const;
@@ -37,20 +55,19 @@ class BlockCholesky {
   /// Solves for each column. Only after a successful factorize().
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right_hand_sides) const;
 
-  /// The diagonal blocks of the inverse (Takahashi's recursion, front by front). Only after a
-  /// successful factorize().
-  std::vector<Eigen::MatrixXd> inverse_diagonal() const;
+  /// Those blocks of the inverse that are in the pattern of the matrix (Takahashi's recursion,
+  /// front by front). Only after a successful factorize().
+  BlockMatrix inverse() const;
 
  private:
   bool factorize_front(std::size_t f, const BlockMatrix& matrix);
   void assemble(std::size_t f, const BlockMatrix& matrix);
+  Eigen::MatrixXd front_inverse(std::size_t f, const Eigen::MatrixXd& parent) const;
   template <int B>
   void add_update(std::size_t child);
 
-  std::size_t blocks_;
+  std::shared_ptr<const FrontTree> tree_;
   int block_size_;
-  std::size_t pair_count_;
-  FrontTree tree_;
   std::vector<std::size_t> panel_begin_;  ///< of each front in panels_
   std::vector<double> panels_;            ///< the factor: of each front its columns, all rows
   std::vector<std::unique_ptr<double[]>> updates_;  ///< what fronts leave to their parents

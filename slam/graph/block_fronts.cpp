@@ -115,6 +115,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> balanced_subtrees(
 
 FrontTree analyzed_fronts(std::size_t blocks, std::span<const BlockPair> pairs) {
   FrontTree tree;
+  tree.pairs = pairs.size();
   tree.order = elimination_order(blocks, pairs);
   Indices position(blocks), front_of(blocks);
   for (std::uint32_t k = 0; k < blocks; ++k) position[tree.order[k]] = k;

@@ -34,6 +34,7 @@ struct Front {
 /// How a symmetric matrix of blocks is eliminated: an order with little fill-in (the better of
 /// minimum degree and nested dissection, by CHOLMOD), and its columns gathered into dense fronts.
 struct FrontTree {
+  std::size_t pairs = 0;             ///< off-diagonal blocks of the matrix
   std::vector<std::uint32_t> order;  ///< order[k]: the block that is eliminated k-th
   std::vector<Front> fronts;         ///< children before parents
   /// Disjoint subtrees of similar work, each a range [begin, end) of fronts, ascending.

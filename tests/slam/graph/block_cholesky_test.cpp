@@ -50,39 +50,51 @@ RandomSystem random_system(std::size_t blocks, int block_size, std::size_t extra
   return system;
 }
 
+std::shared_ptr<const FrontTree> analysis(std::size_t blocks, const std::vector<BlockPair>& pairs) {
+  return std::make_shared<FrontTree>(analyzed_fronts(blocks, pairs));
+}
+
 TEST(BlockCholesky, SolvesAsADenseFactorizationDoes) {
   int seed = 0;
   for (const int block_size : {2, 3, 6})
     for (const std::size_t blocks : {1, 2, 7, 60, 150})
       for (const std::size_t extra : {0, 5, 80}) {
         const RandomSystem system = random_system(blocks, block_size, extra, ++seed);
-        BlockCholesky cholesky(blocks, block_size, system.pairs);
+        BlockCholesky cholesky(analysis(blocks, system.pairs), block_size);
         ASSERT_TRUE(cholesky.factorize(system.matrix));
         const Eigen::MatrixXd b = Eigen::MatrixXd::Random(system.dense.rows(), 3);
         EXPECT_LT((system.dense * cholesky.solve(b) - b).cwiseAbs().maxCoeff(), 1e-11);
       }
 }
 
-TEST(BlockCholesky, GivesTheDiagonalOfTheInverse) {
+TEST(BlockCholesky, GivesTheInverseOnThePattern) {
   int seed = 100;
   for (const int block_size : {2, 3, 6})
     for (const std::size_t blocks : {1, 2, 40, 120}) {
       const RandomSystem system = random_system(blocks, block_size, 60, ++seed);
-      BlockCholesky cholesky(blocks, block_size, system.pairs);
+      BlockCholesky cholesky(analysis(blocks, system.pairs), block_size);
       ASSERT_TRUE(cholesky.factorize(system.matrix));
-      const Eigen::MatrixXd inverse = system.dense.inverse();
-      const auto diagonal = cholesky.inverse_diagonal();
-      ASSERT_EQ(diagonal.size(), blocks);
+      const Eigen::MatrixXd dense = system.dense.inverse();
+      const BlockMatrix sparse = cholesky.inverse();
+      const Eigen::Index b = block_size;
+      const auto area = static_cast<std::size_t>(b * b);
+      const auto block = [&](const std::vector<double>& values, std::size_t k) {
+        return Eigen::Map<const Eigen::MatrixXd>(values.data() + k * area, b, b);
+      };
       for (std::size_t k = 0; k < blocks; ++k) {
-        const auto at = static_cast<Eigen::Index>(k) * block_size;
-        EXPECT_LT((diagonal[k] - inverse.block(at, at, block_size, block_size)).norm(), 1e-12);
+        const auto at = static_cast<Eigen::Index>(k) * b;
+        EXPECT_LT((block(sparse.diagonal, k) - dense.block(at, at, b, b)).norm(), 1e-12);
+      }
+      for (std::size_t k = 0; k < system.pairs.size(); ++k) {
+        const auto [i, j] = system.pairs[k];
+        EXPECT_LT((block(sparse.off_diagonal, k) - dense.block(i * b, j * b, b, b)).norm(), 1e-12);
       }
     }
 }
 
 TEST(BlockCholesky, TurnsDownWhatIsNotPositiveDefinite) {
   RandomSystem system = random_system(30, 3, 20, 7);
-  BlockCholesky cholesky(30, 3, system.pairs);
+  BlockCholesky cholesky(analysis(30, system.pairs), 3);
   EXPECT_TRUE(cholesky.factorize(system.matrix));
   BlockMatrix indefinite = system.matrix;
   indefinite.diagonal[9 * 12] = -1;
@@ -92,7 +104,7 @@ TEST(BlockCholesky, TurnsDownWhatIsNotPositiveDefinite) {
 }
 
 TEST(BlockCholesky, KeepsSeparatePartsApart) {
-  BlockCholesky cholesky(4, 2, {});
+  BlockCholesky cholesky(analysis(4, {}), 2);
   BlockMatrix matrix = cholesky.matrix();
   for (std::size_t k = 0; k < 4; ++k)
     matrix.diagonal[4 * k] = matrix.diagonal[4 * k + 3] = 1.0 + static_cast<double>(k);
@@ -108,7 +120,7 @@ TEST(BlockCholesky, IsTheSameForAnyNumberOfThreads) {
   std::vector<Eigen::MatrixXd> results;
   for (const int threads : {1, 2, 5}) {
     set_thread_count(threads);
-    BlockCholesky cholesky(400, 6, system.pairs);
+    BlockCholesky cholesky(analysis(400, system.pairs), 6);
     ASSERT_TRUE(cholesky.factorize(system.matrix));
     results.push_back(cholesky.solve(b));
   }
