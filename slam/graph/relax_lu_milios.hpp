@@ -24,9 +24,9 @@ struct LuMiliosParams {
   std::size_t max_points = 2000;          ///< of each scan in each link, evenly chosen; 0: all
   std::size_t last_points = 20000;  ///< at last, when the poses hardly move any more, so many are
                                     ///< shared by the links of a scan; 0: all in each
-  std::size_t min_pairs = 50;             ///< of a link; fewer say nothing
-  int max_iterations = 30;                ///< at each gate
-  double tolerance = 0.02;  ///< done when no pose moves more than this much of the noise
+  std::size_t min_pairs = 50;       ///< of a link; fewer say nothing
+  int max_iterations = 30;          ///< at each gate
+  double tolerance = 0.02;          ///< done when no pose moves more than this much of the noise
 };
 
 struct GraphResult {
