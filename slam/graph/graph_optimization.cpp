@@ -21,7 +21,16 @@ struct Solution {
   Descent<Manifold> descent{};
   std::vector<double> squared_errors{};
   std::vector<typename Manifold::Matrix> covariances{};
+  bool hopeless = false;  ///< given up: a loop is very far off
 };
+
+/// Whether a graph may turn out to have false loops.
+enum class Trust { full, doubtful };
+
+/// After so many steps a graph of right loops is nearly done, while wrong ones fill the systems and
+/// do not let it end.
+constexpr int trial_iterations = 15;
+constexpr double hopeless_factor = 30;  ///< beyond what is contradictory
 
 /// Optimizes one graph for this or that choice of loops.
 template <class Manifold>
@@ -44,7 +53,7 @@ class GraphOptimizer {
   }
 
   /// `guess`: poses to start from if they are better than those that `params.start` allows.
-  Solution<Manifold> solve(std::vector<double> weights, const Poses* guess = nullptr) {
+  Solution<Manifold> solve(std::vector<double> weights, Trust trust, const Poses* guess = nullptr) {
     Solution<Manifold> solution{.weights = std::move(weights)};
     solution.parts = joined_poses<Manifold>(problem_.graph, solution.weights);
     problem_.terms.anchors = anchors_of(problem_, params_, solution.parts);
@@ -52,23 +61,20 @@ class GraphOptimizer {
     for (const double weight : solution.weights) included.push_back(weight > 0);
     const GraphPattern pattern = graph_pattern(problem_.graph, included);
     GraphSolver<Manifold> solver(problem_.graph, pattern, problem_.terms);
-    solution.descent = solver.descend(
-        start(solution, pattern, guess), solution.weights,
-        {.max_iterations = params_.max_iterations, .tolerance = params_.tolerance}, progress_);
-    solution.squared_errors =
-        squared_errors<Manifold>(problem_.graph, problem_.terms, solution.descent.poses);
-    if (params_.covariances)
+    solution.descent = descent(solver, start(solution, pattern, guess), solution, trust);
+    solution.squared_errors = squared(solution.descent.poses);
+    if (params_.covariances && !solution.hopeless)
       solution.covariances = solver.covariances(solution.descent.poses, solution.weights);
     return solution;
   }
 
-  /// With all loops, one is farther off than the worst of so many right ones should be: a normal
-  /// value exceeds z in less than exp(-z^2 / 2) / 2 of all cases.
-  bool contradictory(const Solution<Manifold>& solution) const {
+  /// One loop is more than `factor` times farther off than the worst of so many right ones should
+  /// be: a normal value exceeds z in less than exp(-z^2 / 2) / 2 of all cases.
+  bool contradictory(const std::vector<double>& squared_of_edge, double factor = 1) const {
     const double z = std::sqrt(2 * std::log(50.0 * static_cast<double>(loop_count())));
-    const double limit = chi_squared(z, Manifold::dimension);
+    const double limit = factor * chi_squared(z, Manifold::dimension);
     for (std::size_t i = 0; i < problem_.graph.edges.size(); ++i)
-      if (is_loop(i) && !(solution.squared_errors[i] <= limit)) return true;
+      if (is_loop(i) && !(squared_of_edge[i] <= limit)) return true;
     return false;
   }
 
@@ -93,6 +99,26 @@ class GraphOptimizer {
  private:
   bool is_loop(std::size_t edge) const {
     return problem_.graph.edges[edge].accepted && problem_.graph.edges[edge].kind == EdgeKind::loop;
+  }
+
+  std::vector<double> squared(const Poses& poses) const {
+    return squared_errors<Manifold>(problem_.graph, problem_.terms, poses);
+  }
+
+  Descent<Manifold> descent(GraphSolver<Manifold>& solver, Poses poses,
+                            Solution<Manifold>& solution, Trust trust) const {
+    const int trial = trust == Trust::doubtful ? std::min(trial_iterations, params_.max_iterations)
+                                               : params_.max_iterations;
+    DescentParams steps = {.max_iterations = trial, .tolerance = params_.tolerance};
+    Descent<Manifold> tried = solver.descend(std::move(poses), solution.weights, steps, progress_);
+    steps.max_iterations = params_.max_iterations - trial;
+    if (tried.converged || steps.max_iterations == 0) return tried;
+    solution.hopeless = contradictory(squared(tried.poses), hopeless_factor);
+    if (solution.hopeless) return tried;
+    Descent<Manifold> done =
+        solver.descend(std::move(tried.poses), solution.weights, steps, progress_);
+    done.iterations += tried.iterations;
+    return done;
   }
 
   double cost(const Poses& poses, const std::vector<double>& weights) const {
@@ -137,17 +163,18 @@ Result optimized(const typename Manifold::GraphType& graph, const GraphParams& p
   quality.converged = graph.poses.empty();
   if (graph.poses.empty()) return result;
   quality.cost_before = optimizer.cost_before();
-  Solution<Manifold> solution = optimizer.solve(optimizer.all_weights());
+  const bool may_doubt = params.rejection != LoopRejection::never && params.max_iterations > 0 &&
+                         optimizer.loop_count() > 0;
+  Solution<Manifold> solution =
+      optimizer.solve(optimizer.all_weights(), may_doubt ? Trust::doubtful : Trust::full);
   quality.iterations = solution.descent.iterations;
-  const bool doubted =
-      params.rejection == LoopRejection::always ||
-      (params.rejection == LoopRejection::if_needed && optimizer.contradictory(solution));
-  if (doubted && optimizer.loop_count() > 0 && params.max_iterations > 0) {
+  if (may_doubt && (params.rejection == LoopRejection::always ||
+                    optimizer.contradictory(solution.squared_errors))) {
     LoopChoice<Manifold> choice = optimizer.choice();
     quality.noise_scale = choice.noise_scale;
     quality.iterations += choice.systems;
-    if (choice.weights != solution.weights) {
-      solution = optimizer.solve(std::move(choice.weights), &choice.poses);
+    if (solution.hopeless || choice.weights != solution.weights) {
+      solution = optimizer.solve(std::move(choice.weights), Trust::full, &choice.poses);
       quality.iterations += solution.descent.iterations;
     }
   }

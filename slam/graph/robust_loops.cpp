@@ -89,7 +89,7 @@ class LoopSearch {
       if (state.innovations[loop].squared < nominal) ++fitting;
     }
     if (loops_.empty()) return state;
-    largest_scale_ = std::max(1.0, 2 * fitting > loops_.size() ? 1.0 : squared_scale(state));
+    largest_scale_ = std::max(1.0, 2 * fitting >= loops_.size() ? 1.0 : squared_scale(state));
     if (params_.noise_scale > 0) largest_scale_ = std::numeric_limits<double>::infinity();
     state.squared_scale = std::min(largest_scale_, squared_scale(state));
     return state;

@@ -13,6 +13,7 @@ void add_convert_command(CLI::App& app);
 void add_demo_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
 void add_init_command(CLI::App& app);
+void add_optimize_command(CLI::App& app);
 void add_polygonize_command(CLI::App& app);
 void add_run_command(CLI::App& app);
 void add_simulate_command(CLI::App& app);

@@ -30,7 +30,7 @@ TEST_F(CommandLine, KnowsItsVersion) {
 TEST_F(CommandLine, ExplainsEveryCommandThatItLists) {
   const std::string overview = planum_({}).out;
   for (const char* name : {"demo", "init", "check", "run", "status", "config", "evaluate", "view",
-                           "simulate", "convert", "polygonize"}) {
+                           "optimize", "simulate", "convert", "polygonize"}) {
     EXPECT_SAYS(overview, std::string("\n  ") + name + " ");
     const Outcome outcome = planum_({name, "--help"});
     EXPECT_EQ(outcome.exit_code, 0) << name;
