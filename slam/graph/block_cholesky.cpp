@@ -13,6 +13,10 @@ namespace {
 using Panel = Eigen::Map<Eigen::MatrixXd>;
 using ConstPanel = Eigen::Map<const Eigen::MatrixXd>;
 
+/// Multiplications of a factorization that takes some milliseconds; smaller ones are done before a
+/// second thread is awake.
+constexpr double worth_threads = 2e7;
+
 Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 }  // namespace
@@ -26,11 +30,15 @@ BlockCholesky::BlockCholesky(std::shared_ptr<const FrontTree> tree, int block_si
     : tree_(std::move(tree)), block_size_(block_size), updates_(tree_->fronts.size()) {
   const auto b = static_cast<std::size_t>(block_size);
   std::size_t total = 0;
+  double work = 0;
   for (const Front& front : tree_->fronts) {
     panel_begin_.push_back(total);
-    total += front.size() * front.columns * b * b;
+    const std::size_t values = front.size() * front.columns * b * b;
+    total += values;
+    work += static_cast<double>(values) * static_cast<double>(front.size() * b);
   }
   panels_.resize(total);
+  subtrees_together_ = work < worth_threads ? std::max<std::size_t>(tree_->subtrees.size(), 1) : 1;
 }
 
 BlockMatrix BlockCholesky::matrix() const {
@@ -46,7 +54,7 @@ bool BlockCholesky::factorize(const BlockMatrix& matrix) {
     for (std::size_t f = begin; f < end && positive_definite; ++f)
       if (!factorize_front(f, matrix)) positive_definite = false;
   };
-  parallel_for(tree_->subtrees.size(), 1, [&](std::size_t begin, std::size_t end) {
+  parallel_for(tree_->subtrees.size(), subtrees_together_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s)
       factorize_range(tree_->subtrees[s].first, tree_->subtrees[s].second);
   });

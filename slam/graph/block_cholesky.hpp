@@ -68,6 +68,7 @@ class BlockCholesky {
 
   std::shared_ptr<const FrontTree> tree_;
   int block_size_;
+  std::size_t subtrees_together_ = 1;     ///< that one thread takes; all, if the matrix is small
   std::vector<std::size_t> panel_begin_;  ///< of each front in panels_
   std::vector<double> panels_;            ///< the factor: of each front its columns, all rows
   std::vector<std::unique_ptr<double[]>> updates_;  ///< what fronts leave to their parents

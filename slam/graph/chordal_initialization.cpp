@@ -76,7 +76,7 @@ std::vector<typename Manifold::PoseType> chordal_initialization(
   const auto relaxed = relaxed_rotations<Manifold>(graph, pattern, anchors, weights);
   if (!relaxed) return {};
   std::vector<typename Manifold::PoseType> poses(graph.poses.size());
-  parallel_for(poses.size(), 256, [&](std::size_t begin, std::size_t end) {
+  parallel_for(poses.size(), 2048, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const typename Manifold::Rotation transposed =
           relaxed->template middleRows<D>(D * static_cast<Eigen::Index>(i));

@@ -10,7 +10,7 @@ std::vector<double> squared_errors(const typename Manifold::GraphType& graph,
                                    std::span<const typename Manifold::PoseType> poses) {
   const auto& edges = graph.edges;
   std::vector<double> squared(edges.size());
-  parallel_for(edges.size(), 512, [&](std::size_t begin, std::size_t end) {
+  parallel_for(edges.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto e = Manifold::error(poses[edges[i].from], poses[edges[i].to],
                                      edges[i].from_from_to, terms.rotation_error);

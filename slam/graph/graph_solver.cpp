@@ -9,7 +9,8 @@
 namespace planum {
 namespace {
 
-constexpr std::size_t edges_in_block = 512;
+/// Few enough for large graphs, and small ones need no second thread.
+constexpr std::size_t edges_in_block = 3072;
 
 }  // namespace
 

@@ -68,7 +68,7 @@ std::vector<Innovation> GraphSolver<Manifold>::innovations(Poses poses, Weights 
   // A little damping stands for what no edge determines.
   if (!factorize(0) && !factorize(1e-9)) return result;
   const BlockMatrix inverse = anchored_inverse(poses);
-  parallel_for(result.size(), 512, [&](std::size_t begin, std::size_t end) {
+  parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       result[i] = innovation(i, poses, weights[i] > 0, inverse);
   });
