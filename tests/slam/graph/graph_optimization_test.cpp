@@ -103,7 +103,8 @@ TYPED_TEST(GraphOptimization, IsTheSameForAnyNumberOfThreads) {
     auto& values = bits.emplace_back();
     for (std::size_t i = 0; i < result.poses.size(); ++i) {
       for (const double v : M::position(result.poses[i])) values.push_back(v);
-      for (const double v : M::rotation(result.poses[i]).reshaped()) values.push_back(v);
+      const typename M::Rotation rotation = M::rotation(result.poses[i]);
+      for (const double v : rotation.reshaped()) values.push_back(v);
       for (const double v : result.covariances[i].reshaped()) values.push_back(v);
     }
   }
