@@ -3,18 +3,15 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 
 namespace planum {
 
 CurvatureFit::CurvatureFit(const Plane& plane, const Eigen::Vector3d& origin)
-    : plane_(plane),
-      origin_(origin),
-      u_(plane.normal.unitOrthogonal()),
-      v_(plane.normal.cross(u_)) {}
+    : plane_(plane), frame_(plane), origin_(origin) {}
 
 void CurvatureFit::add(const Eigen::Vector3d& point, double weight) {
-  const double x = u_.dot(point - origin_), y = v_.dot(point - origin_);
+  const Eigen::Vector2d flat = frame_.flat(point - origin_);
+  const double x = flat.x(), y = flat.y();
   Eigen::Matrix<double, 6, 1> row;
   row << 1, x, y, x * x, x * y, y * y;
   squares_.noalias() += weight * row * row.transpose();

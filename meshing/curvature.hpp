@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "meshing/plane_geometry.hpp"
 #include "slam/core/plane.hpp"
 
 namespace planum {
@@ -18,7 +19,8 @@ class CurvatureFit {
 
  private:
   Plane plane_;
-  Eigen::Vector3d origin_, u_, v_;
+  PlaneFrame frame_;
+  Eigen::Vector3d origin_;
   Eigen::Matrix<double, 6, 6> squares_ = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> heights_ = Eigen::Matrix<double, 6, 1>::Zero();
 };

@@ -10,6 +10,7 @@
 
 #include "slam/core/error.hpp"
 #include "slam/core/plane.hpp"
+#include "slam/core/robust.hpp"
 
 namespace planum {
 namespace {
@@ -72,12 +73,6 @@ void find_levels(const std::vector<LevelPoint>& points, bool facing_up, const Ei
   }
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// What a level says about the tilt of up towards u and v: normal equations, per variance.
 struct TiltEquations {
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
@@ -89,15 +84,14 @@ struct TiltEquations {
 void add_level(const Level& level, const Eigen::Matrix3d& axes, double band, TiltEquations& sum) {
   std::vector<double> heights;
   for (const Eigen::Vector3d& p : level) heights.push_back(p.dot(axes.col(2)));
-  const double middle = median(heights);
-  std::vector<double> off;
-  for (const double h : heights) off.push_back(std::abs(h - middle));
-  const double scale = std::clamp(4.685 * 1.4826 * median(off), 1e-4, 2 * band);
+  std::vector<double> some = heights;
+  const double middle = upper_median(some);
+  for (double& h : some) h = std::abs(h - middle);
+  const double limit = std::clamp(biweight_limit(some), 1e-4, 2 * band);
   PointMoments moments;  // of (u, v, h - middle)
   for (std::size_t i = 0; i < level.size(); ++i) {
-    const double ratio = (heights[i] - middle) / scale;
-    if (std::abs(ratio) >= 1) continue;
-    const double weight = (1 - ratio * ratio) * (1 - ratio * ratio);
+    const double weight = biweight(heights[i] - middle, limit);
+    if (weight == 0) continue;
     moments.add({level[i].dot(axes.col(0)), level[i].dot(axes.col(1)), heights[i] - middle},
                 weight);
   }

@@ -45,17 +45,10 @@ class Candidates {
   void read(const PatchGrid& grid, const std::vector<PatchPlane>& planes,
             const std::vector<std::uint32_t>& first, const Eigen::Vector3i& at,
             const Eigen::Vector3f& middle) {
-    constexpr int width = block_width + 2;
     merged_.clear();
-    for (int z = at.z(); z < at.z() + 3; ++z)
-      for (int y = at.y(); y < at.y() + 3; ++y)
-        for (int x = at.x(); x < at.x() + 3; ++x) {
-          std::uint32_t patch = first[std::size_t((z * width + y) * width + x)];
-          if (patch == no_thing) continue;
-          const CellKey cell = grid.cells[patch];
-          for (; patch < grid.cells.size() && grid.cells[patch] == cell; ++patch)
-            if (planes[patch].weight > 0) add(planes[patch], middle);
-        }
+    for_patches_around(grid, first, at, [&](std::uint32_t patch) {
+      if (planes[patch].weight > 0) add(planes[patch], middle);
+    });
     middle_ = middle;
     for (Merged& merged : merged_) {
       merged.mean = merged.normal.normalized();

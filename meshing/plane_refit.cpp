@@ -6,6 +6,7 @@
 
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
+#include "slam/core/robust.hpp"
 
 namespace planum {
 namespace {
@@ -27,12 +28,6 @@ std::vector<std::vector<std::uint32_t>> points_of_regions(
     if (seen[region]++ % step == 0) points[region].push_back(i);
   }
   return points;
-}
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// For each region, how far its vertices are from a plane at most (m).
@@ -62,18 +57,16 @@ Plane robust_plane(Plane plane, const Cloud& cloud, std::span<const std::uint32_
     };
     for (std::size_t i = 0; i < points.size(); ++i)
       residuals[i] = std::abs(plane.signed_distance(at(i)));
-    // 1.4826 makes the median residual a standard deviation, 4.685 is Tukey's constant.
-    const double limit = std::max(4.685 * 1.4826 * median(residuals), 1e-6);
+    const double limit = std::max(biweight_limit(residuals), 1e-6);
     PointMoments moments;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Eigen::Vector3d p = at(i);
-      const double ratio = plane.signed_distance(p) / limit;
-      if (std::abs(ratio) < 1) moments.add(p, (1 - ratio * ratio) * (1 - ratio * ratio));
+      const double weight = biweight(plane.signed_distance(p), limit);
+      if (weight > 0) moments.add(p, weight);
     }
     const std::optional<PlaneFit> fit = fit_plane(moments);
     if (!fit) break;
-    const double side = fit->plane.normal.dot(plane.normal) < 0 ? -1 : 1;
-    plane = {side * fit->plane.normal, side * fit->plane.offset};
+    plane = facing(fit->plane, plane.normal);
   }
   plane.offset += plane.normal.dot(origin);
   return plane;

@@ -130,13 +130,8 @@ class Grower {
   }
 
   void refit() {
-    std::optional<PlaneFit> fit = fit_plane(moments_);
-    if (!fit) return;
-    if (fit->plane.normal.dot(plane_.normal) < 0) {
-      fit->plane.normal *= -1;
-      fit->plane.offset *= -1;
-    }
-    plane_ = relative_to(fit->plane, -origin_);
+    if (const std::optional<PlaneFit> fit = fit_plane(moments_))
+      plane_ = relative_to(facing(fit->plane, plane_.normal), -origin_);
   }
 
   /// What was taken by an earlier, poorer plane.

@@ -131,10 +131,8 @@ class SurfelGrower {
   }
 
   void refit() {
-    const std::optional<PlaneFit> fit = fit_plane(moments_);
-    if (!fit) return;
-    const double side = fit->plane.normal.dot(plane_.normal) < 0 ? -1 : 1;
-    plane_ = relative_to({side * fit->plane.normal, side * fit->plane.offset}, -surfels_.origin());
+    if (const std::optional<PlaneFit> fit = fit_plane(moments_))
+      plane_ = relative_to(facing(fit->plane, plane_.normal), -surfels_.origin());
   }
 
   bool is_plane() const {

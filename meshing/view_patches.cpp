@@ -253,7 +253,6 @@ PatchGrid coarser(const PatchGrid& fine) {
 }
 
 std::vector<PatchPlane> patch_planes(const PatchGrid& grid, const NormalParams& params) {
-  constexpr int width = block_width + 2;
   std::vector<PatchPlane> planes(grid.patches.size());
   parallel_for(grid.blocks.size(), blocks_per_task, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> first;
@@ -264,15 +263,8 @@ std::vector<PatchPlane> patch_planes(const PatchGrid& grid, const NormalParams& 
       for (std::uint32_t self = grid.begin[b]; self < grid.begin[b + 1]; ++self) {
         const Eigen::Vector3i at = cell_of(grid.cells[self]) - cell_of(block);
         neighbours.clear();
-        for (int z = at.z(); z < at.z() + 3; ++z)
-          for (int y = at.y(); y < at.y() + 3; ++y)
-            for (int x = at.x(); x < at.x() + 3; ++x) {
-              std::uint32_t patch = first[std::size_t((z * width + y) * width + x)];
-              if (patch == no_thing) continue;
-              const CellKey cell = grid.cells[patch];
-              for (; patch < grid.cells.size() && grid.cells[patch] == cell; ++patch)
-                neighbours.push_back(patch);
-            }
+        for_patches_around(grid, first, at,
+                           [&](std::uint32_t patch) { neighbours.push_back(patch); });
         planes[self] = plane_around(grid, self, neighbours, params);
       }
     }

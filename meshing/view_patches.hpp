@@ -35,6 +35,22 @@ struct PatchGrid {
   std::vector<ViewPatch> patches;
 };
 
+/// Calls visit(patch) for the patches of the 3 x 3 x 3 cells around one. `first` is what
+/// surrounding_cells() found for the block, one cell deep; `at` is the cell's place in the block.
+template <class Visit>
+void for_patches_around(const PatchGrid& grid, const std::vector<std::uint32_t>& first,
+                        const Eigen::Vector3i& at, const Visit& visit) {
+  constexpr int width = block_width + 2;
+  for (int z = at.z(); z < at.z() + 3; ++z)
+    for (int y = at.y(); y < at.y() + 3; ++y)
+      for (int x = at.x(); x < at.x() + 3; ++x) {
+        std::uint32_t patch = first[std::size_t((z * width + y) * width + x)];
+        if (patch == no_thing) continue;
+        const CellKey cell = grid.cells[patch];
+        for (; patch < grid.cells.size() && grid.cells[patch] == cell; ++patch) visit(patch);
+      }
+}
+
 /// One patch a cell, two where scanners look at its points from opposite sides.
 PatchGrid view_patches(const Lattice& lattice, const CellSort& sorted,
                        std::span<const CellKey> cells, const Cloud& cloud,

@@ -4,6 +4,11 @@
 
 namespace planum {
 
+Plane facing(const Plane& plane, const Eigen::Vector3d& direction) {
+  const double side = plane.normal.dot(direction) < 0 ? -1 : 1;
+  return {side * plane.normal, side * plane.offset};
+}
+
 void PointMoments::add(const Eigen::Vector3d& p, double weight) {
   count += weight;
   sum += weight * p;

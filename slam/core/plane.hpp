@@ -18,6 +18,9 @@ struct Plane {
   }
 };
 
+/// The same plane with its normal on the side of a direction.
+Plane facing(const Plane& plane, const Eigen::Vector3d& direction);
+
 /// Sums over points from which their centroid and covariance follow; adding two is adding their
 /// points. Take points relative to somewhere near them: squares of large numbers cancel badly.
 struct PointMoments {

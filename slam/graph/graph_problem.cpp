@@ -89,15 +89,7 @@ std::vector<std::vector<std::size_t>> joined_poses(const typename Manifold::Grap
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t i = 0; i < graph.edges.size(); ++i)
     if (weights[i] > 0) pairs.emplace_back(graph.edges[i].from, graph.edges[i].to);
-  const std::vector<std::size_t> first = first_connected(graph.poses.size(), pairs);
-  std::vector<std::size_t> part_of(first.size());
-  std::vector<std::vector<std::size_t>> parts;
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    part_of[i] = first[i] == i ? parts.size() : part_of[first[i]];
-    if (first[i] == i) parts.emplace_back();
-    parts[part_of[i]].push_back(i);
-  }
-  return parts;
+  return components(graph.poses.size(), pairs).members();
 }
 
 template <class Manifold>

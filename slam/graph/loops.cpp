@@ -12,6 +12,7 @@
 
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
+#include "slam/core/robust.hpp"
 #include "slam/graph/edge_relaxation.hpp"
 #include "slam/graph/path_covariance.hpp"
 #include "slam/graph/scan_links.hpp"
@@ -68,11 +69,7 @@ class LoopSearch {
     std::vector<double> rms;
     for (const Edge& edge : graph.edges)
       if (edge.accepted && edge.matched) rms.push_back(edge.rms);
-    if (!rms.empty()) {
-      const auto middle = rms.begin() + static_cast<std::ptrdiff_t>(rms.size() / 2);
-      std::nth_element(rms.begin(), middle, rms.end());
-      usual_rms_ = *middle;
-    }
+    if (!rms.empty()) usual_rms_ = upper_median(rms);
   }
 
   std::vector<Edge> run(const Progress& progress) {

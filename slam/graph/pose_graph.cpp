@@ -54,7 +54,12 @@ Components components(const PoseGraph& graph) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (const Edge& edge : graph.edges)
     if (edge.accepted && edge.matched) pairs.emplace_back(edge.from, edge.to);
-  const std::vector<std::size_t> first = first_connected(graph.poses.size(), pairs);
+  return components(graph.poses.size(), pairs);
+}
+
+Components components(std::size_t count,
+                      std::span<const std::pair<std::size_t, std::size_t>> pairs) {
+  const std::vector<std::size_t> first = first_connected(count, pairs);
   Components result{.of_pose = std::vector<std::size_t>(first.size()), .count = 0};
   for (std::size_t i = 0; i < first.size(); ++i)
     result.of_pose[i] = first[i] == i ? result.count++ : result.of_pose[first[i]];

@@ -61,4 +61,8 @@ struct Components {
 
 Components components(const PoseGraph& graph);
 
+/// The same for `count` things that pairs connect.
+Components components(std::size_t count,
+                      std::span<const std::pair<std::size_t, std::size_t>> pairs);
+
 }  // namespace planum

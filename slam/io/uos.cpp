@@ -44,6 +44,15 @@ Eigen::Vector3d euler_xyz(const Eigen::Matrix3d& r) {
 
 }  // namespace
 
+Pose pose_from_uos(const Eigen::Vector3d& position, const Eigen::Vector3d& angles) {
+  Eigen::Matrix4d transform = Eigen::Matrix4d::Identity();
+  transform.topLeftCorner<3, 3>() = rotation_about(Eigen::Vector3d::UnitX(), radians(angles.x())) *
+                                    rotation_about(Eigen::Vector3d::UnitY(), radians(angles.y())) *
+                                    rotation_about(Eigen::Vector3d::UnitZ(), radians(angles.z()));
+  transform.topRightCorner<3, 1>() = position;
+  return pose_from_uos(transform);
+}
+
 Pose pose_from_uos(const Eigen::Matrix4d& transform) {
   const Eigen::Matrix3d axes = planum_from_uos_axes();
   Pose pose = Pose::Identity();
@@ -101,12 +110,7 @@ Pose read_uos_pose(const std::filesystem::path& path) {
         count));
   if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
     reader.fail("expected finite numbers");
-  Eigen::Matrix4d transform = Eigen::Matrix4d::Identity();
-  transform.topLeftCorner<3, 3>() = rotation_about(Eigen::Vector3d::UnitX(), radians(values[3])) *
-                                    rotation_about(Eigen::Vector3d::UnitY(), radians(values[4])) *
-                                    rotation_about(Eigen::Vector3d::UnitZ(), radians(values[5]));
-  transform.topRightCorner<3, 1>() = Eigen::Vector3d(values[0], values[1], values[2]);
-  return pose_from_uos(transform);
+  return pose_from_uos({values[0], values[1], values[2]}, {values[3], values[4], values[5]});
 }
 
 void write_uos_pose(const std::filesystem::path& path, const Pose& world_from_scan) {

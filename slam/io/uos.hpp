@@ -26,6 +26,9 @@ Pose read_uos_pose(const std::filesystem::path& path);
 
 void write_uos_pose(const std::filesystem::path& path, const Pose& world_from_scan);
 
+/// A pose as its file has it: position in cm, angles in degrees, R = Rx Ry Rz.
+Pose pose_from_uos(const Eigen::Vector3d& position, const Eigen::Vector3d& angles);
+
 /// A rigid transform of 3DTK (homogeneous matrix, cm) in the conventions of this project, and back.
 Pose pose_from_uos(const Eigen::Matrix4d& transform);
 Eigen::Matrix4d uos_from_pose(const Pose& pose);

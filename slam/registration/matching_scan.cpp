@@ -10,6 +10,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
 #include "slam/core/plane.hpp"
+#include "slam/core/robust.hpp"
 #include "slam/registration/reduction.hpp"
 
 namespace planum {
@@ -96,12 +97,7 @@ std::optional<LocalPlane> plane_through(std::span<const Neighbour> neighbours,
   return plane;
 }
 
-double median(std::vector<float> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+double median(std::vector<float> values) { return values.empty() ? 0 : upper_median(values); }
 
 /// Fits the planes of points [begin, end) and notes the distances to the next points.
 void fit_planes(const Choice& choice, const MatchingScanParams& params, std::size_t begin,

@@ -5,6 +5,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
+#include "slam/registration/normal_equations.hpp"
+
 namespace planum {
 namespace {
 
@@ -135,10 +137,10 @@ Eigen::Vector3d small_turn(const PairSums& sums) {
   return least_solution<3>(ss.trace() * Eigen::Matrix3d::Identity() - ss, moment);
 }
 
-Eigen::Matrix3d rotation_of(const Eigen::Vector3d& vector) {
-  const double angle = vector.norm();
-  if (angle == 0) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
+Pose motion_by_small_angle(const PairSums& sums) {
+  Vector6d twist;
+  twist << sums.target_mean - sums.source_mean, small_turn(sums);
+  return motion_about(sums.source_mean, twist);
 }
 
 /// Pottmann, Leopoldseder & Hofer 2002: the velocity v(x) = c0 + c x x with least squares is that
@@ -194,7 +196,7 @@ Pose rigid_motion(std::span<const Pair> pairs, Minimizer minimizer) {
     case Minimizer::helix:
       return motion_by_helix(sums);
     case Minimizer::small_angle:
-      return about_means(rotation_of(small_turn(sums)), sums);
+      return motion_by_small_angle(sums);
     case Minimizer::lu_milios:
       return motion_by_lu_milios(pairs, sums);
   }

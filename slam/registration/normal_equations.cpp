@@ -38,6 +38,39 @@ NormalEquations summary(std::span<const Pair> pairs) {
   return result;
 }
 
+/// Residual n.(p - q); turning moves the places `lever(pair)`.
+template <class Lever>
+NormalEquations equations_along_normals(std::span<const Pair> pairs, const Lever& lever) {
+  NormalEquations result = summary(pairs);
+  for (const Pair& pair : pairs) {
+    const double residual = pair.normal.dot(pair.source - pair.target);
+    Vector6d derivative;
+    derivative << pair.normal, (lever(pair) - result.centre).cross(pair.normal);
+    const Vector6d weighted = pair.weight * derivative;
+    result.hessian.noalias() += weighted * derivative.transpose();
+    result.gradient += weighted * residual;
+    result.squared_residuals += pair.weight * residual * residual;
+  }
+  return result;
+}
+
+/// Residual p - q, measured by `metric(pair)`: a number or a matrix.
+template <class Metric>
+NormalEquations equations_of_points(std::span<const Pair> pairs, const Metric& metric) {
+  NormalEquations result = summary(pairs);
+  for (const Pair& pair : pairs) {
+    const Eigen::Vector3d residual = pair.source - pair.target;
+    Eigen::Matrix<double, 3, 6> derivative;
+    derivative << Eigen::Matrix3d::Identity(), -skew(pair.source - result.centre);
+    const auto weight = metric(pair);
+    const Eigen::Matrix<double, 6, 3> weighted = derivative.transpose() * weight;
+    result.hessian.noalias() += weighted * derivative;
+    result.gradient += weighted * residual;
+    result.squared_residuals += residual.dot(weight * residual);
+  }
+  return result;
+}
+
 }  // namespace
 
 double NormalEquations::rms() const {
@@ -54,64 +87,25 @@ double NormalEquations::residual_variance() const {
 }
 
 NormalEquations point_to_plane_equations(std::span<const Pair> pairs) {
-  NormalEquations result = summary(pairs);
-  for (const Pair& pair : pairs) {
-    const double residual = pair.normal.dot(pair.source - pair.target);
-    Vector6d derivative;
-    derivative << pair.normal, (pair.source - result.centre).cross(pair.normal);
-    const Vector6d weighted = pair.weight * derivative;
-    result.hessian.noalias() += weighted * derivative.transpose();
-    result.gradient += weighted * residual;
-    result.squared_residuals += pair.weight * residual * residual;
-  }
-  return result;
+  return equations_along_normals(pairs, [](const Pair& pair) { return pair.source; });
+}
+
+NormalEquations symmetric_equations(std::span<const Pair> pairs) {
+  return equations_along_normals(
+      pairs, [](const Pair& pair) -> Eigen::Vector3d { return 0.5 * (pair.source + pair.target); });
 }
 
 NormalEquations point_to_point_equations(std::span<const Pair> pairs) {
-  NormalEquations result = summary(pairs);
+  NormalEquations result = equations_of_points(pairs, [](const Pair& pair) { return pair.weight; });
   result.equations_per_pair = 3;
   // The normals do not enter, nor do their errors.
   result.tilt_variance = 0;
-  for (const Pair& pair : pairs) {
-    const Eigen::Vector3d residual = pair.source - pair.target;
-    Eigen::Matrix<double, 3, 6> derivative;
-    derivative << Eigen::Matrix3d::Identity(), -skew(pair.source - result.centre);
-    const Eigen::Matrix<double, 6, 3> weighted = pair.weight * derivative.transpose();
-    result.hessian.noalias() += weighted * derivative;
-    result.gradient += weighted * residual;
-    result.squared_residuals += pair.weight * residual.squaredNorm();
-  }
   return result;
 }
 
 NormalEquations plane_to_plane_equations(std::span<const Pair> pairs) {
-  NormalEquations result = summary(pairs);
-  for (const Pair& pair : pairs) {
-    const Eigen::Vector3d residual = pair.source - pair.target;
-    Eigen::Matrix<double, 3, 6> derivative;
-    derivative << Eigen::Matrix3d::Identity(), -skew(pair.source - result.centre);
-    const Eigen::Matrix3d metric = pair.weight * pair_metric(pair);
-    const Eigen::Matrix<double, 6, 3> weighted = derivative.transpose() * metric;
-    result.hessian.noalias() += weighted * derivative;
-    result.gradient += weighted * residual;
-    result.squared_residuals += residual.dot(metric * residual);
-  }
-  return result;
-}
-
-NormalEquations symmetric_equations(std::span<const Pair> pairs) {
-  NormalEquations result = summary(pairs);
-  for (const Pair& pair : pairs) {
-    const double residual = pair.normal.dot(pair.source - pair.target);
-    const Eigen::Vector3d middle = 0.5 * (pair.source + pair.target);
-    Vector6d derivative;
-    derivative << pair.normal, (middle - result.centre).cross(pair.normal);
-    const Vector6d weighted = pair.weight * derivative;
-    result.hessian.noalias() += weighted * derivative.transpose();
-    result.gradient += weighted * residual;
-    result.squared_residuals += pair.weight * residual * residual;
-  }
-  return result;
+  return equations_of_points(
+      pairs, [](const Pair& pair) -> Eigen::Matrix3d { return pair.weight * pair_metric(pair); });
 }
 
 NormalEquations normal_equations(std::span<const Pair> pairs, Pairing pairing) {

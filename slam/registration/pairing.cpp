@@ -8,18 +8,12 @@
 #include <Eigen/LU>
 
 #include "slam/core/parallel.hpp"
+#include "slam/core/robust.hpp"
 
 namespace planum {
 namespace {
 
 constexpr std::size_t points_per_block = 1024;
-
-/// How much a pair counts: 1 on the plane, falling smoothly to 0 at the gate (Tukey's biweight).
-double biweight(double residual, double gate) {
-  const double ratio = residual / gate;
-  const double rest = 1 - ratio * ratio;
-  return rest > 0 ? rest * rest : 0;
-}
 
 /// A number that looks random but depends on nothing but the place, to 5 cm.
 std::uint64_t rank_of_place(const Eigen::Vector3f& point) {

@@ -14,30 +14,12 @@
 #include "slam/io/uos.hpp"
 #include "slam/registration/sequence.hpp"
 #include "slam/sensor/range_limits.hpp"
+#include "tests/slam/registration/simulated_room.hpp"
 
 namespace {
 
 using namespace planum;
-
-Pose uos_pose(const Eigen::Vector3d& cm, const Eigen::Vector3d& deg) {
-  Eigen::Matrix4d transform = Eigen::Matrix4d::Identity();
-  transform.topLeftCorner<3, 3>() = (Eigen::AngleAxisd(radians(deg.x()), Eigen::Vector3d::UnitX()) *
-                                     Eigen::AngleAxisd(radians(deg.y()), Eigen::Vector3d::UnitY()) *
-                                     Eigen::AngleAxisd(radians(deg.z()), Eigen::Vector3d::UnitZ()))
-                                        .toRotationMatrix();
-  transform.topRightCorner<3, 1>() = cm;
-  return pose_from_uos(transform);
-}
-
-Pose random_motion(std::mt19937& random, double shift, double turn) {
-  std::normal_distribution<double> normal;
-  const auto direction = [&] {
-    return Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
-  };
-  Pose motion(Eigen::AngleAxisd(turn, direction()));
-  motion.translation() = shift * direction();
-  return motion;
-}
+using testing::random_motion;
 
 /// Shifts, turns and times of many starts.
 struct Figures {
@@ -109,8 +91,8 @@ int main() {
     given.push_back(read_uos_pose(folder / (name + ".pose")));
   }
   const std::vector<Pose> reference = {
-      Pose::Identity(), uos_pose({-3.809, -5.898, 156.411}, {1.308, -0.828, -0.516}),
-      uos_pose({-8.262, -13.725, 339.371}, {0.367, -0.488, -0.309})};
+      Pose::Identity(), pose_from_uos({-3.809, -5.898, 156.411}, {1.308, -0.828, -0.516}),
+      pose_from_uos({-8.262, -13.725, 339.371}, {0.367, -0.488, -0.309})};
   print_whole_pair(clouds[0], clouds[1], reference[1]);
   print_basin(scans, reference[1], 1.0, 15);
   print_basin(scans, reference[1], 2.0, 30);

@@ -21,6 +21,7 @@
 #include "slam/sensor/range_limits.hpp"
 #include "slam/sensor/simulator.hpp"
 #include "slam/sensor/tilted_laser.hpp"
+#include "tests/support/numbered.hpp"
 
 namespace {
 
@@ -118,14 +119,9 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-Trajectory numbered(const std::vector<Pose>& poses) {
-  Trajectory result;
-  for (const Pose& pose : poses) result.push_back({static_cast<double>(result.size()), pose});
-  return result;
-}
-
 void print_error(const char* what, const std::vector<Pose>& poses, const std::vector<Pose>& truth) {
-  const TrajectoryError error = trajectory_error(numbered(poses), numbered(truth));
+  const TrajectoryError error =
+      trajectory_error(testing::numbered(poses), testing::numbered(truth));
   fmt::print("{:10} {:8.1f} mm rmse, {:8.1f} mm at most, {:6.3f} deg on average\n", what,
              1000 * error.ape_translation.rmse, 1000 * error.ape_translation.max,
              error.ape_rotation.mean);

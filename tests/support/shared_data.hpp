@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/core/error.hpp"
+
 namespace planum::testing {
 
 /// ../shared/datasets/NAME beside the project, if it is there.
@@ -36,6 +38,19 @@ class TemporaryDirectory {
  private:
   std::filesystem::path path_;
 };
+
+/// Expects that a call cannot write `path`, and says so as a fault of the environment.
+template <class Call>
+void expect_cannot_write(const std::filesystem::path& path, const Call& call) {
+  try {
+    call();
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::environment);
+    EXPECT_TRUE(std::string(error.what()).starts_with(path.string() + ": cannot open for writing"))
+        << error.what();
+  }
+}
 
 }  // namespace planum::testing
 

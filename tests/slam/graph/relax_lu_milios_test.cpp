@@ -15,12 +15,14 @@
 #include "slam/sensor/odometry_drift.hpp"
 #include "slam/sensor/range_limits.hpp"
 #include "tests/slam/registration/simulated_room.hpp"
+#include "tests/support/numbered.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace planum {
 namespace {
 
 using testing::message_of;
+using testing::numbered;
 using testing::random_motion;
 using testing::scan_of;
 using testing::shift_between;
@@ -238,12 +240,6 @@ GraphResult registered(const std::vector<MatchingScan>& scans, const std::vector
   return relax_lu_milios(graph, scans);
 }
 
-Trajectory numbered(const std::vector<Pose>& poses) {
-  Trajectory result;
-  for (const Pose& pose : poses) result.push_back({static_cast<double>(result.size()), pose});
-  return result;
-}
-
 TEST(Registration, MapsABuildingWithARingCorridor) {
   const Building building = demo_building();
   const std::vector<Pose> truth = demo_poses();
@@ -303,18 +299,9 @@ TEST(Registration, MapsTheCorridorFromShakenPoses) {
     given.push_back(read_uos_pose(folder / (name + ".pose")));
   }
   // The independent solution in the data's README, in the conventions of UOS.
-  const auto reference_of = [](double x, double y, double z, double rx, double ry, double rz) {
-    Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-    m.topLeftCorner<3, 3>() = (Eigen::AngleAxisd(radians(rx), Eigen::Vector3d::UnitX()) *
-                               Eigen::AngleAxisd(radians(ry), Eigen::Vector3d::UnitY()) *
-                               Eigen::AngleAxisd(radians(rz), Eigen::Vector3d::UnitZ()))
-                                  .toRotationMatrix();
-    m.topRightCorner<3, 1>() = Eigen::Vector3d(x, y, z);
-    return pose_from_uos(m);
-  };
   const std::vector<Pose> reference = {
-      Pose::Identity(), reference_of(-3.809, -5.898, 156.411, 1.308, -0.828, -0.516),
-      reference_of(-8.262, -13.725, 339.371, 0.367, -0.488, -0.309)};
+      Pose::Identity(), pose_from_uos({-3.809, -5.898, 156.411}, {1.308, -0.828, -0.516}),
+      pose_from_uos({-8.262, -13.725, 339.371}, {0.367, -0.488, -0.309})};
   std::mt19937 random(1);
   for (int start = 0; start < 3; ++start) {
     std::vector<Pose> odometry = given;

@@ -244,17 +244,6 @@ TEST(Icp, RefusesBadParameters) {
   EXPECT_EQ(message_of([&] { align(scan, scan, guess); }), "registration: the guess is not finite");
 }
 
-/// A pose as UOS files have it.
-Pose uos_pose(const Eigen::Vector3d& cm, const Eigen::Vector3d& deg) {
-  Eigen::Matrix4d transform = Eigen::Matrix4d::Identity();
-  transform.topLeftCorner<3, 3>() = (Eigen::AngleAxisd(radians(deg.x()), Eigen::Vector3d::UnitX()) *
-                                     Eigen::AngleAxisd(radians(deg.y()), Eigen::Vector3d::UnitY()) *
-                                     Eigen::AngleAxisd(radians(deg.z()), Eigen::Vector3d::UnitZ()))
-                                        .toRotationMatrix();
-  transform.topRightCorner<3, 1>() = cm;
-  return pose_from_uos(transform);
-}
-
 TEST(Icp, FindsTheReferenceOfARealCorridor) {
   PLANUM_SHARED_DATASET(folder, "kurt3d_corridor");
   std::vector<MatchingScan> scans;
@@ -262,8 +251,8 @@ TEST(Icp, FindsTheReferenceOfARealCorridor) {
     scans.push_back(matching_scan(limited(read_uos_scan(folder / name)).cloud));
   // The independent solution in the data's README.
   const std::vector<Pose> reference = {
-      Pose::Identity(), uos_pose({-3.809, -5.898, 156.411}, {1.308, -0.828, -0.516}),
-      uos_pose({-8.262, -13.725, 339.371}, {0.367, -0.488, -0.309})};
+      Pose::Identity(), pose_from_uos({-3.809, -5.898, 156.411}, {1.308, -0.828, -0.516}),
+      pose_from_uos({-8.262, -13.725, 339.371}, {0.367, -0.488, -0.309})};
   const std::vector<Pose> given = {Pose::Identity(), read_uos_pose(folder / "scan001.pose"),
                                    read_uos_pose(folder / "scan002.pose")};
   std::mt19937 random(1);

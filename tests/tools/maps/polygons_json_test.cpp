@@ -210,14 +210,7 @@ TEST(PolygonsJson, SaysWhereItCannotBeWritten) {
   const TemporaryDirectory directory;
   const SmallMap small = small_map();
   const auto path = directory.path() / "absent" / "polygons.json";
-  try {
-    write_polygons_json(path, small.labelled());
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::environment);
-    EXPECT_TRUE(std::string(error.what()).starts_with(path.string() + ": cannot open for writing"))
-        << error.what();
-  }
+  testing::expect_cannot_write(path, [&] { write_polygons_json(path, small.labelled()); });
 }
 
 }  // namespace

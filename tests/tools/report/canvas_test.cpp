@@ -196,14 +196,7 @@ TEST(Canvas, WordsGrowWithTheirLettersAndHeight) {
 TEST(Canvas, SaysWhereItCannotBeWritten) {
   const TemporaryDirectory directory;
   const auto path = directory.path() / "absent" / "picture.png";
-  try {
-    Canvas(3, 3).write_png(path);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::environment);
-    EXPECT_TRUE(std::string(error.what()).starts_with(path.string() + ": cannot open for writing"))
-        << error.what();
-  }
+  testing::expect_cannot_write(path, [&] { Canvas(3, 3).write_png(path); });
 }
 
 }  // namespace

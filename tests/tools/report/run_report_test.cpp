@@ -194,14 +194,7 @@ TEST(RunReport, SaysWhenLabelsAreOfAnotherMap) {
 TEST(RunReport, SaysWhereItCannotBeWritten) {
   const TemporaryDirectory directory;
   const auto path = directory.path() / "absent" / "report.json";
-  try {
-    write_report_json(path, {});
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::environment);
-    EXPECT_TRUE(std::string(error.what()).starts_with(path.string() + ": cannot open for writing"))
-        << error.what();
-  }
+  testing::expect_cannot_write(path, [&] { write_report_json(path, {}); });
 }
 
 }  // namespace

@@ -382,14 +382,7 @@ TEST(TopView, SaysWhereItCannotBeWritten) {
   const TemporaryDirectory directory;
   const auto path = directory.path() / "absent" / "topview.png";
   const Cloud none;
-  try {
-    write_top_view(path, view_of(none));
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::environment);
-    EXPECT_TRUE(std::string(error.what()).starts_with(path.string() + ": cannot open for writing"))
-        << error.what();
-  }
+  testing::expect_cannot_write(path, [&] { write_top_view(path, view_of(none)); });
 }
 
 }  // namespace
