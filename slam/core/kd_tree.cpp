@@ -180,14 +180,23 @@ class KdSearch {
     }
   }
 
+  /// A point by its place; the distance is what distances() has for it.
+  Neighbour at(std::uint32_t leaf, std::uint32_t slot) const {
+    const KdTree::Bucket& bucket = bucket_of(leaf);
+    const float dx = bucket.x[slot] - query_[0], dy = bucket.y[slot] - query_[1],
+                dz = bucket.z[slot] - query_[2];
+    return {bucket.index[slot], dx * dx + dy * dy + dz * dz};
+  }
+
   const KdTree::Bucket& bucket_of(std::uint32_t leaf) const {
     return tree_.buckets_[leaf - tree_.first_leaf_];
   }
 
   /// Calls visit(leaf) for the leaves of a subtree that may hold something within bound(), nearer
-  /// halves first.
-  template <typename Visit, typename Bound>
-  void descend(std::uint32_t node, const Visit& visit, const Bound& bound) const {
+  /// halves first, and passed_by(squared distance) for what is left out.
+  template <typename Visit, typename Bound, typename PassedBy>
+  void descend(std::uint32_t node, const Visit& visit, const Bound& bound,
+               const PassedBy& passed_by) const {
     struct Pending {
       std::uint32_t node;
       float distance;
@@ -202,15 +211,27 @@ class KdSearch {
           std::swap(near, far);
           std::swap(near_distance, far_distance);
         }
-        if (near_distance > bound()) break;
-        if (far_distance <= bound()) pending[count++] = {far, far_distance};
+        if (near_distance > bound()) {
+          passed_by(near_distance);
+          break;
+        }
+        if (far_distance <= bound())
+          pending[count++] = {far, far_distance};
+        else
+          passed_by(far_distance);
         node = near;
       }
       if (node >= tree_.first_leaf_) visit(node);
-      while (count > 0 && pending[count - 1].distance > bound()) --count;
+      while (count > 0 && pending[count - 1].distance > bound())
+        passed_by(pending[--count].distance);
       if (count == 0) return;
       node = pending[--count].node;
     }
+  }
+
+  template <typename Visit, typename Bound>
+  void descend(std::uint32_t node, const Visit& visit, const Bound& bound) const {
+    descend(node, visit, bound, [](float) {});
   }
 
   /// The leaf a search without a hint begins with.
@@ -221,16 +242,16 @@ class KdSearch {
     return node;
   }
 
-  /// Whether every point within sqrt(squared_radius) of the query must be in the node's subtree.
-  bool answers_for(std::uint32_t node, float squared_radius) const {
+  /// Squared distance to the nearest border of the node's part of space: whatever is nearer is in
+  /// its subtree. Zero outside of it.
+  float squared_margin(std::uint32_t node) const {
     const KdTree::Box& cell = tree_.cells_[node];
-    bool inside = true;
+    float margin = infinity;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float below = query_[axis] - cell.low[axis], above = cell.high[axis] - query_[axis];
-      const float margin = below < above ? below : above;
-      inside = inside && margin > 0 && margin * margin > squared_radius;
+      margin = std::min(margin, std::min(below, above));
     }
-    return inside;
+    return margin > 0 ? margin * margin : 0;
   }
 
   std::uint32_t first_leaf() const { return tree_.first_leaf_; }
@@ -244,6 +265,13 @@ namespace {
 
 constexpr std::uint32_t no_index = std::numeric_limits<std::uint32_t>::max();
 
+float least_of(const KdSearch::Distances& values) {
+  // Floats that are not negative are ordered as their bits are, and integers have a fast minimum.
+  std::int32_t least = std::bit_cast<std::int32_t>(infinity);
+  for (const float value : values) least = std::min(least, std::bit_cast<std::int32_t>(value));
+  return std::bit_cast<float>(least);
+}
+
 /// The best point so far of a search for one.
 struct Best {
   const KdSearch& search;
@@ -254,25 +282,62 @@ struct Best {
   void visit(std::uint32_t visited) {
     KdSearch::Distances squared;
     search.distances(visited, squared);
-    // Floats that are not negative are ordered as their bits are, and integers have a fast minimum.
-    std::int32_t least = std::bit_cast<std::int32_t>(infinity);
-    for (const float value : squared) least = std::min(least, std::bit_cast<std::int32_t>(value));
-    const float minimum = std::bit_cast<float>(least);
-    if (minimum > squared_distance) return;
-    const auto& indices = search.bucket_of(visited).index;
-    std::uint32_t lowest = no_index;  // of the points at that distance
-    for (std::size_t i = 0; i < squared.size(); ++i)
-      lowest = std::min(lowest, squared[i] == minimum ? indices[i] : no_index);
-    if (minimum == squared_distance && lowest >= index) return;
-    squared_distance = minimum;
-    index = lowest;
-    leaf = visited;
+    take(visited, squared, least_of(squared));
   }
   std::optional<Neighbour> result() const {
     if (index == no_index) return std::nullopt;
     return Neighbour{index, squared_distance};
   }
+
+ protected:
+  /// True if there is a better one in the bucket.
+  bool take(std::uint32_t visited, const KdSearch::Distances& squared, float minimum) {
+    if (minimum > squared_distance) return false;
+    const auto& indices = search.bucket_of(visited).index;
+    std::uint32_t lowest = no_index;  // of the points at that distance
+    for (std::size_t i = 0; i < squared.size(); ++i)
+      lowest = std::min(lowest, squared[i] == minimum ? indices[i] : no_index);
+    if (minimum == squared_distance && lowest >= index) return false;
+    squared_distance = minimum;
+    index = lowest;
+    leaf = visited;
+    return true;
+  }
 };
+
+/// The same, and how near any other point may be.
+struct BestAndOthers : Best {
+  float others = infinity;  // squared
+
+  void visit(std::uint32_t visited) {
+    KdSearch::Distances squared;
+    search.distances(visited, squared);
+    const float minimum = least_of(squared), before = squared_distance;
+    const bool had_one = index != no_index;
+    if (!take(visited, squared, minimum)) {
+      pass_by(minimum);
+      return;
+    }
+    if (had_one) pass_by(before);
+    const auto& indices = search.bucket_of(visited).index;
+    for (std::size_t i = 0; i < squared.size(); ++i)
+      if (indices[i] == index) squared[i] = infinity;
+    pass_by(least_of(squared));
+  }
+  void pass_by(float squared) { others = std::min(others, squared); }
+
+  /// Where in the tree the answer is; where none was found, the leaf that was looked at.
+  std::uint32_t place(std::uint32_t looked_at) const {
+    if (index == no_index) return looked_at * bucket_size;
+    const auto& indices = search.bucket_of(leaf).index;
+    std::uint32_t slot = 0;
+    while (indices[slot] != index) ++slot;
+    return leaf * bucket_size + slot;
+  }
+};
+
+/// Distances are rounded to some parts in 10^7; so much nearer and farther a true one may be.
+constexpr float least_distance = 1 - 4e-6f, most_distance = 1 + 4e-6f;
 
 float squared_bound(float max_distance) { return std::min(max_distance * max_distance, largest); }
 
@@ -287,24 +352,45 @@ std::optional<Neighbour> KdTree::nearest(const Eigen::Vector3f& query, float max
 }
 
 std::optional<Neighbour> KdTree::nearest(const Eigen::Vector3f& query, float max_distance,
-                                         std::uint32_t& leaf_hint) const {
+                                         SearchMemory& memory) const {
   const KdSearch search(*this, query);
-  Best best{.search = search, .squared_distance = squared_bound(max_distance)};
-  const bool usable = leaf_hint >= first_leaf_ && leaf_hint < 2 * first_leaf_;
-  std::uint32_t node = usable ? leaf_hint : search.likely_leaf();
-  leaf_hint = node;
+  const float most = squared_bound(max_distance);
+  std::uint32_t node = memory.place / bucket_size;
+  const bool usable = node >= first_leaf_ && node < 2 * first_leaf_;
+  if (usable && memory.others >= 0) {
+    const Neighbour last = search.at(node, memory.place % bucket_size);
+    const float near = memory.found ? std::min(last.squared_distance, most) : most;
+    const float others =
+        least_distance * memory.others - (query - memory.query).norm() * most_distance;
+    if (others > 0 && others * others > near)
+      return memory.found && last.squared_distance <= most ? std::optional(last) : std::nullopt;
+  } else if (!usable) {
+    node = search.likely_leaf();
+  }
+  const std::uint32_t first = node;
+  BestAndOthers best{{.search = search, .squared_distance = most}};
   best.visit(node);
-  while (node > 1 && !search.answers_for(node, best.squared_distance)) {
+  while (node > 1) {
+    if (const float margin = search.squared_margin(node); margin > best.squared_distance) {
+      best.pass_by(margin);
+      break;
+    }
     const std::uint32_t sibling = node ^ 1;
-    if (search.distance(sibling) <= best.squared_distance) {
+    if (const float distance = search.distance(sibling); distance <= best.squared_distance) {
       search.descend(
           sibling, [&](std::uint32_t leaf) { best.visit(leaf); },
-          [&] { return best.squared_distance; });
+          [&] { return best.squared_distance; }, [&](float squared) { best.pass_by(squared); });
+    } else {
+      best.pass_by(distance);
     }
     node /= 2;
   }
-  if (best.leaf != 0) leaf_hint = best.leaf;
-  return best.result();
+  const auto result = best.result();
+  memory = {.place = best.place(first),
+            .found = result.has_value(),
+            .query = query,
+            .others = std::sqrt(best.others)};
+  return result;
 }
 
 void KdTree::k_nearest(const Eigen::Vector3f& query, std::size_t k, std::vector<Neighbour>& result,

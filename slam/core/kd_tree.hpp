@@ -24,6 +24,14 @@ struct Neighbour {
   }
 };
 
+/// What a search remembers for the next one of a query that moves little. For one tree only.
+struct SearchMemory {
+  std::uint32_t place = 0;  ///< leaf and place in its bucket where the last search ended; 0: none
+  bool found = false;       ///< whether the point there was the answer
+  Eigen::Vector3f query = {};  ///< m, of the last search that looked at the tree
+  float others = -1;           ///< m, all other points are at least this far from that query
+};
+
 /// An exact nearest-neighbour search tree over 3D points (float): a complete binary tree in heap
 /// order (children of node i: 2i and 2i+1, side by side in memory) over buckets of up to 16 points
 /// that are padded to 16, with tight boxes. Immutable after construction, so that any number of
@@ -38,11 +46,13 @@ class KdTree {
   /// The nearest point not farther than max_distance (m).
   std::optional<Neighbour> nearest(const Eigen::Vector3f& query, float max_distance) const;
 
-  /// The same answer, faster for a query that moves little between searches: `leaf_hint` keeps the
-  /// leaf where the last search ended (0 at first), and this one starts there and climbs only as
-  /// far as it must (Nuechter, Lingemann, Hertzberg: Cached k-d tree search for ICP, 3DIM 2007).
+  /// The same answer, faster for a query that moves little between searches. Where the triangle
+  /// inequality shows that the last answer still is the nearest, the tree is not looked at
+  /// (Greenspan & Godin, 3DIM 2001); else the search starts in the leaf where the last one ended
+  /// and climbs only as far as it must (Nuechter, Lingemann, Hertzberg: Cached k-d tree search for
+  /// ICP, 3DIM 2007).
   std::optional<Neighbour> nearest(const Eigen::Vector3f& query, float max_distance,
-                                   std::uint32_t& leaf_hint) const;
+                                   SearchMemory& memory) const;
 
   /// The k nearest points within max_distance, ascending, written to `result` (its room is reused).
   void k_nearest(const Eigen::Vector3f& query, std::size_t k, std::vector<Neighbour>& result,

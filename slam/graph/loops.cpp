@@ -33,6 +33,7 @@ void check(std::span<const MatchingScan> scans, const PoseGraph& graph, const Lo
   require(params.max_distance > 0, "max_distance", params.max_distance, "> 0 m");
   require(params.min_overlap > 0 && params.min_overlap <= 1, "min_overlap", params.min_overlap,
           "between 0 and 1");
+  require(params.known_within >= 0, "known_within", params.known_within, ">= 0 m");
   require(params.step_translation > 0, "step_translation", params.step_translation, "> 0 m");
   require(params.step_rotation > 0, "step_rotation", degrees(params.step_rotation), "> 0 deg");
   require(params.max_deviation > 0, "max_deviation", params.max_deviation, "> 0");
@@ -54,6 +55,13 @@ struct Candidate {
   }
 };
 
+/// m, standard deviation of where a pose with this covariance puts a point so far away.
+double placed_within(const Matrix6d& covariance, double radius) {
+  const double shift = covariance.diagonal().head<3>().maxCoeff();
+  const double turn = covariance.diagonal().tail<3>().maxCoeff();
+  return std::sqrt(shift + radius * radius * turn);
+}
+
 /// How many standard deviations an error is.
 double deviation(const Vector6d& error, const Matrix6d& covariance) {
   return std::sqrt(std::max(0.0, error.dot(covariance.ldlt().solve(error))));
@@ -74,7 +82,9 @@ class LoopSearch {
 
   std::vector<Edge> run(const Progress& progress) {
     for (int round = 0; round < params_.max_rounds; ++round) {
-      const std::vector<Candidate> found = candidates();
+      // Few at first, while the path is unsure and gates are wide: they make the others easy.
+      const std::vector<Candidate> found =
+          candidates(std::min(params_.candidates_per_scan, std::size_t{1} << std::min(round, 20)));
       if (found.empty()) break;
       verify(found, progress);
       settle();
@@ -86,7 +96,7 @@ class LoopSearch {
 
  private:
   /// Pairs that no edge joins yet and no match was tried for from about the same guess.
-  std::vector<Candidate> candidates() const {
+  std::vector<Candidate> candidates(std::size_t per_scan) const {
     const PoseGraph closed = with_loops();
     std::vector<Candidate> all;
     std::vector<std::vector<Candidate>> of_scan(scans_.size());
@@ -97,7 +107,7 @@ class LoopSearch {
           of_scan[from].push_back(*candidate);
     });
     for (const auto& some : of_scan) all.insert(all.end(), some.begin(), some.end());
-    return most_overlapping(std::move(all));
+    return most_overlapping(std::move(all), per_scan);
   }
 
   std::optional<Candidate> considered(std::size_t from, std::size_t to,
@@ -107,6 +117,8 @@ class LoopSearch {
                      .guess = graph_.poses[from].inverse() * graph_.poses[to],
                      .covariance = covariance.value_or(unknown())};
     if (result.guess.translation().norm() > params_.max_distance) return std::nullopt;
+    if (placed_within(result.covariance, scans_[to].radius) < params_.known_within)
+      return std::nullopt;
     if (const auto known = loops_.find({from, to}); known != loops_.end()) {
       const Pose change = guesses_.at({from, to}).inverse() * result.guess;
       if (known->second.accepted || change.translation().norm() < params_.least_gate / 2)
@@ -141,7 +153,7 @@ class LoopSearch {
   }
 
   /// Each scan's best ones; a pair counts for both of its scans.
-  std::vector<Candidate> most_overlapping(std::vector<Candidate> all) const {
+  std::vector<Candidate> most_overlapping(std::vector<Candidate> all, std::size_t per_scan) const {
     std::vector<std::size_t> order(all.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     std::stable_sort(order.begin(), order.end(),
@@ -150,8 +162,7 @@ class LoopSearch {
     std::vector<Candidate> result;
     for (const std::size_t k : order) {
       Candidate& candidate = all[k];
-      if (std::min(count[candidate.from], count[candidate.to]) >= params_.candidates_per_scan)
-        continue;
+      if (std::min(count[candidate.from], count[candidate.to]) >= per_scan) continue;
       ++count[candidate.from];
       ++count[candidate.to];
       result.push_back(candidate);

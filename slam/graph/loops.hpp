@@ -24,6 +24,8 @@ LoopMatcher icp_loop_matcher(std::span<const MatchingScan> scans, const IcpParam
 struct LoopParams {
   double max_distance = 10;   ///< m, scans taken farther apart are no candidates
   double min_overlap = 0.25;  ///< share of common points, first estimated, then that of the match
+  double known_within = 0.1;  ///< m, pairs whose points the path places better than this (standard
+                              ///< deviation) are no candidates: the relaxation links them anyway
   std::size_t candidates_per_scan = 4;  ///< each scan brings its most overlapping ones
   /// What a step of the path may be off beyond its covariance (scans are bent, floors are not
   /// flat).
@@ -33,7 +35,7 @@ struct LoopParams {
   double max_rms_ratio = 2.5;  ///< rms of a match, in median rms of the steps of the path
   double least_gate = 0.3;     ///< m, first gate of a match however sure the path is
   double most_gate = 3.0;      ///< m, the same however unsure
-  int max_rounds = 4;          ///< of looking for candidates with the loops so far closed
+  int max_rounds = 5;          ///< of looking for candidates with the loops so far closed
 };
 
 /// Looks for scans that were taken near each other but not one after another: candidates by

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -49,9 +50,12 @@ class Relaxation {
  public:
   Relaxation(const PoseGraph& graph, std::span<const MatchingScan> scans,
              const LuMiliosParams& params, std::vector<Pose> poses)
-      : graph_(graph), scans_(scans), params_(params), poses_(std::move(poses)) {
-    for (std::size_t i = 0; i < scans.size(); ++i)
-      selections_.push_back(selection(i, params.max_points));
+      : graph_(graph),
+        scans_(scans),
+        params_(params),
+        poses_(std::move(poses)),
+        newly_selected_(scans.size(), false) {
+    for (const MatchingScan& scan : scans) selections_.push_back(scan.selection(params.max_points));
     for (const MatchingScan& scan : scans)
       if (scan.noise > 0) noise_ = noise_ == 0 ? scan.noise : std::min(noise_, scan.noise);
     noise_ = std::max(noise_, least_noise);
@@ -89,12 +93,6 @@ class Relaxation {
   const std::vector<Pose>& poses() const { return poses_; }
 
  private:
-  /// At most so many points of a scan, evenly chosen; 0: all.
-  std::vector<std::uint32_t> selection(std::size_t scan, std::size_t most) const {
-    const std::vector<Eigen::Vector3f>& points = scans_[scan].points;
-    return stable_selection(points, most > 0 ? most : points.size());
-  }
-
   /// Which points are looked at at last: a scan with few links needs more in each to be as well
   /// placed. False if there are no more than before.
   bool select_more() {
@@ -106,9 +104,10 @@ class Relaxation {
       const std::size_t most = params_.last_points > 0
                                    ? std::max(params_.max_points, params_.last_points / links[i])
                                    : 0;
-      const std::size_t before = selections_[i].size();
-      selections_[i] = selection(i, most);
-      more = more || selections_[i].size() > before;
+      std::vector<std::uint32_t> selection = scans_[i].selection(most);
+      if (selection.size() <= selections_[i].size()) continue;
+      selections_[i] = std::move(selection);
+      newly_selected_[i] = more = true;
     }
     return more;
   }
@@ -125,8 +124,18 @@ class Relaxation {
                            .min_overlap = params_.min_overlap,
                            .links_per_scan = params_.links_per_scan},
                           excluded_);
+    // A link that stays remembers where its points found theirs.
+    std::map<ScanPair, ScanLink> known;
+    for (ScanLink& link : links_) known.emplace(link.pair(), std::move(link));
     links_.clear();
-    for (const ScanPair& pair : pairs) links_.emplace_back(pair, scans_, selections_);
+    for (const ScanPair& pair : pairs) {
+      const auto stays = known.find(pair);
+      if (stays != known.end() && !newly_selected_[pair.first] && !newly_selected_[pair.second])
+        links_.push_back(std::move(stays->second));
+      else
+        links_.emplace_back(pair, scans_, selections_);
+    }
+    newly_selected_.assign(scans_.size(), false);
     const std::set<ScanPair> linked(pairs.begin(), pairs.end());
     kept_edges_.clear();
     kept_information_.clear();
@@ -184,6 +193,7 @@ class Relaxation {
   double noise_ = 0;
   std::set<ScanPair> excluded_;
   std::vector<std::vector<std::uint32_t>> selections_;  ///< of each scan
+  std::vector<bool> newly_selected_;                    ///< whose links are to be made anew
   std::vector<ScanLink> links_;
   std::vector<const Edge*> kept_edges_;
   std::vector<Matrix6d> kept_information_;

@@ -67,9 +67,7 @@ class Matching {
         noise_(pair_noise(source, target)),
         guess_(guess),
         coarse_(source, target, source.coarse),
-        fine_(source, target,
-              stable_selection(source.points,
-                               params.max_points > 0 ? params.max_points : source.points.size())) {}
+        fine_(source, target, source.selection(params.max_points)) {}
 
   Alignment run() {
     Alignment result{.target_from_source = guess_};

@@ -34,6 +34,29 @@ void check(const MatchingScanParams& params) {
           ">= neighbours");
 }
 
+/// A number that looks random but depends on nothing but the place, to 5 cm.
+std::uint64_t rank_of_place(const Eigen::Vector3f& point) {
+  std::uint64_t hash = 0x9E3779B97F4A7C15u;
+  for (const float coordinate : point) {
+    hash ^= static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(coordinate * 20)));
+    // The finalizer of splitmix64 (Steele, Lea, Flood: OOPSLA 2014).
+    hash = (hash ^ (hash >> 30)) * 0xBF58476D1CE4E5B9u;
+    hash = (hash ^ (hash >> 27)) * 0x94D049BB133111EBu;
+    hash ^= hash >> 31;
+  }
+  return hash;
+}
+
+std::vector<std::uint32_t> shuffled_by_place(std::span<const Eigen::Vector3f> points) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> ranked(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    ranked[i] = {rank_of_place(points[i]), static_cast<std::uint32_t>(i)};
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<std::uint32_t> result(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) result[i] = ranked[i].second;
+  return result;
+}
+
 /// A choice of points, and for each the sums over the points that it stands for, relative to it.
 struct Choice {
   std::vector<Eigen::Vector3f> points;
@@ -104,10 +127,12 @@ void fit_planes(const Choice& choice, const MatchingScanParams& params, std::siz
                 std::size_t end, MatchingScan& scan, std::vector<float>& spacing) {
   std::vector<Neighbour> neighbours;
   for (std::size_t i = begin; i < end; ++i) {
-    std::optional<LocalPlane> plane;
-    for (std::size_t k = params.neighbours; !plane && k <= params.most_neighbours; k *= 2) {
-      scan.tree.k_nearest(scan.points[i], k, neighbours);
-      plane = plane_through(neighbours, choice);
+    scan.tree.k_nearest(scan.points[i], params.neighbours, neighbours);
+    std::optional<LocalPlane> plane = plane_through(neighbours, choice);
+    if (!plane) {
+      scan.tree.k_nearest(scan.points[i], params.most_neighbours, neighbours);
+      for (std::size_t k = 2 * params.neighbours; !plane && k <= neighbours.size(); k *= 2)
+        plane = plane_through(std::span(neighbours).first(k), choice);
     }
     scan.planes[i] = plane.value_or(LocalPlane{.mean = scan.points[i]});
     spacing[i] = neighbours.size() > 1 ? std::sqrt(neighbours[1].squared_distance) : 0;
@@ -116,12 +141,25 @@ void fit_planes(const Choice& choice, const MatchingScanParams& params, std::siz
 
 }  // namespace
 
+std::vector<std::uint32_t> MatchingScan::selection(std::size_t most) const {
+  std::vector<std::uint32_t> result;
+  if (most == 0 || most >= points.size()) {
+    result.resize(points.size());
+    std::iota(result.begin(), result.end(), 0u);
+    return result;
+  }
+  result.assign(shuffled.begin(), shuffled.begin() + static_cast<std::ptrdiff_t>(most));
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
 MatchingScan matching_scan(const Cloud& cloud, const MatchingScanParams& params) {
   check(params);
   const Choice choice = choice_of(cloud.points, params.voxel);
   MatchingScan scan{.points = choice.points,
                     .planes = std::vector<LocalPlane>(choice.points.size()),
                     .coarse = voxel_grid(choice.points, params.coarse_voxel).representative,
+                    .shuffled = shuffled_by_place(choice.points),
                     .tree = KdTree(choice.points)};
   std::vector<float> spacing(scan.points.size());
   parallel_for(scan.points.size(), points_per_block, [&](std::size_t begin, std::size_t end) {

@@ -34,6 +34,7 @@ struct MatchingScan {
   std::vector<Eigen::Vector3f> points;  ///< m, scanner frame; real points of the scan
   std::vector<LocalPlane> planes;       ///< as long as points
   std::vector<std::uint32_t> coarse;    ///< positions of an even, thinner choice of points
+  std::vector<std::uint32_t> shuffled;  ///< all positions; any first ones are an even choice
   KdTree tree;                          ///< of points
   double noise = 0;                     ///< m, median thickness of the local planes
   double spacing = 0;                   ///< m, median distance to the nearest other point
@@ -46,6 +47,10 @@ struct MatchingScan {
     const LocalPlane& plane = planes[i];
     return points[i] - plane.normal.dot(points[i] - plane.mean) * plane.normal;
   }
+
+  /// Positions of at most `most` points, ascending, chosen by where they are: nearly the same scan,
+  /// with some points more, fewer or moved a little, gives nearly the same choice. 0: all.
+  std::vector<std::uint32_t> selection(std::size_t most) const;
 };
 
 /// Reduces a scan (scanner frame, scanner at the origin) and fits planes to the neighbourhoods.

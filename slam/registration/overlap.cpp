@@ -1,14 +1,15 @@
 #include "slam/registration/overlap.hpp"
 
+#include <algorithm>
 #include <cmath>
-
-#include "slam/registration/pairing.hpp"
+#include <span>
 
 namespace planum {
 
 double estimated_overlap(const MatchingScan& source, const MatchingScan& target,
                          const Pose& target_from_source, const OverlapParams& params) {
-  const std::vector<std::uint32_t> samples = stable_selection(source.points, params.samples);
+  const auto samples =
+      std::span(source.shuffled).first(std::min(params.samples, source.shuffled.size()));
   if (samples.empty()) return 0;
   const float least_cosine = static_cast<float>(std::cos(params.max_normal_angle));
   const Eigen::Matrix3f rotation = target_from_source.linear().cast<float>();

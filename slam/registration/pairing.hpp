@@ -40,33 +40,36 @@ struct Pair {
 /// n n^T plus a thousandth of the rest where both normals are n.
 Eigen::Matrix3d pair_metric(const Pair& pair);
 
-/// Finds pairs again and again while a source moves towards its target; remembers where in the
-/// tree each point ended, so that the next search is short.
+/// Finds pairs again and again while a source moves towards its target; remembers what each search
+/// found, so that the next one is short.
 class PairFinder {
  public:
   /// `selection` are positions of source points. Both scans must outlive the finder.
   PairFinder(const MatchingScan& source, const MatchingScan& target,
-             std::vector<std::uint32_t> selection);
+             std::span<const std::uint32_t> selection);
 
   /// Pairs in the order of the selection.
   std::vector<Pair> find(const Pose& target_from_source, Pairing pairing, const PairGate& gate);
 
-  std::size_t selected() const { return selection_.size(); }
+  std::size_t selected() const { return seekers_.size(); }
 
   /// How many pairs there are for each independent one: with point_to_plane a selected point
   /// carries the noise of all the points of its plane, which its neighbours carry too.
   double redundancy(Pairing pairing) const;
 
  private:
-  const MatchingScan& source_;
-  const MatchingScan& target_;
-  std::vector<std::uint32_t> selection_;
-  std::vector<std::uint32_t> leaf_hints_;
-};
+  /// A selected point of the source, in the source's frame.
+  struct Seeker {
+    Eigen::Vector3f point;     ///< m
+    Eigen::Vector3f smoothed;  ///< m, MatchingScan::smoothed
+    Eigen::Vector3f normal;    ///< zero: unknown
+    float tilt_variance = 0;   ///< rad^2
+    SearchMemory memory;
+  };
 
-/// Positions of at most `most` points, chosen at random by where the points are: nearly the same
-/// scan, with some points more, fewer or moved a little, gives nearly the same choice.
-std::vector<std::uint32_t> stable_selection(std::span<const Eigen::Vector3f> points,
-                                            std::size_t most);
+  const MatchingScan* source_;
+  const MatchingScan* target_;
+  std::vector<Seeker> seekers_;
+};
 
 }  // namespace planum

@@ -1,10 +1,12 @@
 // A building whose corridor is a ring, rooms entered and left, odometry that is off by metres when
 // the ring closes: scans registered, loops closed, relaxed. Time by step and error of the path.
 //
-// usage: sequence_benchmark [SEED [DRIFT]]   DRIFT: in multiples of the usual one
+// usage: sequence_benchmark [SEED [DRIFT [STEP]]]   DRIFT: in multiples of the usual one; STEP: m,
+// between stops in the corridor
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <vector>
 
 #include <fmt/format.h>
@@ -72,7 +74,7 @@ BuildingPlan ring_plan(std::vector<Entrance>& entrances) {
 }
 
 /// Round the ring counter-clockwise, into each room on the way, and a little past the start.
-std::vector<Pose> ring_path(const std::vector<Entrance>& entrances) {
+std::vector<Pose> ring_path(const std::vector<Entrance>& entrances, double step) {
   std::vector<Pose> poses;
   double x = corridor / 2, y = corridor / 2, heading = 0;
   const auto stop = [&](double to_x, double to_y, double degrees_of_heading) {
@@ -83,7 +85,7 @@ std::vector<Pose> ring_path(const std::vector<Entrance>& entrances) {
   };
   const auto drive = [&](double to_x, double to_y, double along) {
     const double way = std::hypot(to_x - x, to_y - y);
-    const int steps = std::max(1, static_cast<int>(std::ceil(way / 2.2)));
+    const int steps = std::max(1, static_cast<int>(std::ceil(way / step)));
     const double from_x = x, from_y = y;
     for (int k = 1; k <= steps; ++k)
       stop(from_x + (to_x - from_x) * k / steps, from_y + (to_y - from_y) * k / steps, along);
@@ -115,8 +117,20 @@ std::vector<Pose> ring_path(const std::vector<Entrance>& entrances) {
   return poses;
 }
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+/// Time on the wall and of all processors so far, s.
+struct Time {
+  double wall, processor;
+};
+
+Time now() {
+  using std::chrono::steady_clock;
+  return {std::chrono::duration<double>(steady_clock::now().time_since_epoch()).count(),
+          static_cast<double>(std::clock()) / CLOCKS_PER_SEC};
+}
+
+void print_time(const char* what, const Time& from, const Time& to) {
+  fmt::print("{:10} {:6.2f} s, processors {:6.2f} s\n", what, to.wall - from.wall,
+             to.processor - from.processor);
 }
 
 void print_error(const char* what, const std::vector<Pose>& poses, const std::vector<Pose>& truth) {
@@ -134,7 +148,8 @@ int main(int argc, char** argv) {
   const double drift = argc > 2 ? std::strtod(argv[2], nullptr) : 1;
   std::vector<Entrance> entrances;
   const Building building = built(ring_plan(entrances));
-  const std::vector<Pose> truth = ring_path(entrances);
+  const double step = argc > 3 ? std::strtod(argv[3], nullptr) : 2.2;
+  const std::vector<Pose> truth = ring_path(entrances, step);
   const auto simulated = simulate_scans(building.mesh.mesh, truth, {.seed = seed});
   std::vector<Cloud> clouds;
   std::size_t points = 0;
@@ -156,26 +171,26 @@ int main(int argc, char** argv) {
   fmt::print("odometry off by {:.2f} m at the end\n", closure(odometry));
   print_error("odometry", odometry, truth);
 
-  const double start = now();
+  const Time start = now();
   std::vector<std::optional<MatchingScan>> ready(clouds.size());
   parallel_for(clouds.size(), 1,
                [&](std::size_t i, std::size_t) { ready[i] = matching_scan(clouds[i]); });
   std::vector<MatchingScan> scans;
   for (auto& scan : ready) scans.push_back(std::move(*scan));
-  const double made_ready = now();
+  const Time made_ready = now();
   const SequenceMatch sequence = match_in_order(odometry, icp_matcher(scans));
-  const double matched = now();
+  const Time matched = now();
   print_error("matched", sequence.poses, truth);
   PoseGraph graph = pose_graph(sequence);
   const std::vector<Edge> loops = find_loops(scans, graph, icp_loop_matcher(scans));
   graph.edges.insert(graph.edges.end(), loops.begin(), loops.end());
-  const double closed = now();
+  const Time closed = now();
   const GraphResult result = relax_lu_milios(graph, scans);
-  const double relaxed = now();
+  const Time relaxed = now();
   print_error("relaxed", result.graph.poses, truth);
 
   std::size_t unmatched = 0, accepted = 0, wrong = 0;
-  for (const SequenceStep& step : sequence.steps) unmatched += !step.matched;
+  for (const SequenceStep& way : sequence.steps) unmatched += !way.matched;
   for (const Edge& loop : loops) {
     if (!loop.accepted) continue;
     ++accepted;
@@ -184,8 +199,9 @@ int main(int argc, char** argv) {
   }
   fmt::print("{} steps not matched; {} loops accepted, {} of them wrong, {} rejected\n", unmatched,
              accepted, wrong, loops.size() - accepted);
-  fmt::print(
-      "made ready {:.2f} s, matched {:.2f} s, loops {:.2f} s, relaxed {:.2f} s, all {:.2f} s\n",
-      made_ready - start, matched - made_ready, closed - matched, relaxed - closed,
-      relaxed - start);
+  print_time("made ready", start, made_ready);
+  print_time("matched", made_ready, matched);
+  print_time("loops", matched, closed);
+  print_time("relaxed", closed, relaxed);
+  print_time("all", start, relaxed);
 }

@@ -117,23 +117,42 @@ TEST(KdTree, AgreesWithBruteForceBitForBit) {
   }
 }
 
-TEST(KdTree, HintsNeverChangeAnAnswer) {
+TEST(KdTree, MemoryNeverChangesAnAnswer) {
   for (const auto& [name, points] : distributions()) {
     const KdTree tree(points);
     std::mt19937 random(3);
-    std::uniform_real_distribution<float> step(-0.02f, 0.02f);
     for (Eigen::Vector3f query : queries_for(points)) {
-      std::uint32_t hint =
-          random() % 5 == 0 ? static_cast<std::uint32_t>(random()) : 0;  // also nonsense
-      for (int move = 0; move < 6; ++move) {
-        const float radius = move % 2 ? 0.1f : 5.0f;
+      SearchMemory memory;
+      if (random() % 5 == 0)  // a place that is none, or some other one
+        memory.place = static_cast<std::uint32_t>(random());
+      // Steps that get shorter, as those of ICP; the radius shrinks, grows, finds nothing.
+      for (int move = 0; move < 12; ++move) {
+        const float length = 0.05f * std::pow(0.6f, static_cast<float>(move));
+        const float radius = move % 4 == 1 ? 0.1f : move % 4 == 2 ? 0.001f : 5.0f;
         const auto plain = tree.nearest(query, radius);
-        const auto cached = tree.nearest(query, radius, hint);
-        ASSERT_EQ(plain.has_value(), cached.has_value()) << name;
+        const auto cached = tree.nearest(query, radius, memory);
+        ASSERT_EQ(plain.has_value(), cached.has_value()) << name << " move " << move;
         if (plain) expect_same({*cached}, {*plain}, name);
-        query += Eigen::Vector3f(step(random), step(random), step(random));
+        std::uniform_real_distribution<float> step(-length, length);
+        if (move != 5) query += Eigen::Vector3f(step(random), step(random), step(random));
       }
     }
+  }
+}
+
+TEST(KdTree, TiesAreAnsweredAlikeWithMemory) {
+  // Queries half way between points of a grid: two, four or eight are the nearest.
+  Points points;
+  for (int i = 0; i < 12 * 12 * 12; ++i)
+    points.push_back(Eigen::Vector3f(static_cast<float>(i % 12), static_cast<float>(i / 12 % 12),
+                                     static_cast<float>(i / 144)));
+  const KdTree tree(points);
+  SearchMemory memory;
+  for (int step = 0; step <= 80; ++step) {
+    const Eigen::Vector3f query = Eigen::Vector3f(1, 1, 1) * (0.125f * static_cast<float>(step));
+    const auto plain = tree.nearest(query, 10), cached = tree.nearest(query, 10, memory);
+    ASSERT_TRUE(plain && cached);
+    expect_same({*cached}, {*plain}, "grid");
   }
 }
 
@@ -158,9 +177,10 @@ TEST(KdTree, IsTheSameForAnyNumberOfThreads) {
 TEST(KdTree, OfNothingFindsNothing) {
   const KdTree tree(Points{});
   std::vector<Neighbour> found(3);
-  std::uint32_t hint = 0;
+  SearchMemory memory;
   EXPECT_FALSE(tree.nearest({0, 0, 0}, 1));
-  EXPECT_FALSE(tree.nearest({0, 0, 0}, 1, hint));
+  EXPECT_FALSE(tree.nearest({0, 0, 0}, 1, memory));
+  EXPECT_FALSE(tree.nearest({0, 0, 0}, 1, memory));
   tree.k_nearest({0, 0, 0}, 3, found);
   EXPECT_TRUE(found.empty());
 }

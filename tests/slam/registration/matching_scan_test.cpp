@@ -104,5 +104,35 @@ TEST(MatchingScan, RefusesBadInput) {
             std::string::npos);
 }
 
+TEST(MatchingScan, SelectsByPlaceNotByPosition) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> coordinate(-5, 5);
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < 5000; ++i)
+    points.emplace_back(coordinate(random), coordinate(random), coordinate(random));
+  // The same scan with its first point lost and all others moved by a twentieth of a millimetre.
+  std::vector<Eigen::Vector3f> other(points.begin() + 1, points.end());
+  for (Eigen::Vector3f& p : other) p.x() += 5e-5f;
+  const auto scan_of = [](std::vector<Eigen::Vector3f> p) {
+    Cloud cloud;
+    cloud.points = std::move(p);
+    return matching_scan(cloud, {.voxel = 0});
+  };
+  const MatchingScan scan = scan_of(points);
+  const auto chosen = scan.selection(500), again = scan_of(other).selection(500);
+  ASSERT_EQ(chosen.size(), 500u);
+  ASSERT_EQ(again.size(), 500u);
+  std::vector<std::uint32_t> shifted, common;
+  for (const std::uint32_t i : again) shifted.push_back(i + 1);
+  std::set_intersection(chosen.begin(), chosen.end(), shifted.begin(), shifted.end(),
+                        std::back_inserter(common));
+  EXPECT_GT(common.size(), 485u);
+  EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
+  EXPECT_EQ(scan.selection(0).size(), 5000u);
+  EXPECT_EQ(scan_of({{1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).selection(5),
+            (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_TRUE(scan_of({}).selection(5).empty());
+}
+
 }  // namespace
 }  // namespace planum

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <random>
-#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -20,9 +18,7 @@ MatchingScan room_scan(const Pose& pose, std::uint64_t number) {
   return matching_scan(testing::scan_of(testing::furnished_room(), pose, number), {.voxel = 0.15});
 }
 
-std::vector<std::uint32_t> all(const MatchingScan& scan) {
-  return stable_selection(scan.points, scan.points.size());
-}
+std::vector<std::uint32_t> all(const MatchingScan& scan) { return scan.selection(0); }
 
 TEST(Pairing, FindsTheNearestPointWhileTheSourceMoves) {
   const MatchingScan target = room_scan(Pose(Eigen::Translation3d(1.5, 1.5, 1)), 1);
@@ -88,30 +84,8 @@ TEST(Pairing, KnowsHowManyPairsShareTheirNoise) {
   const PairFinder every(scan, scan, all(scan));
   EXPECT_DOUBLE_EQ(every.redundancy(Pairing::point_to_plane), 12);
   EXPECT_DOUBLE_EQ(every.redundancy(Pairing::point_to_point), 1);
-  const PairFinder few(scan, scan, stable_selection(scan.points, 20));
+  const PairFinder few(scan, scan, scan.selection(20));
   EXPECT_DOUBLE_EQ(few.redundancy(Pairing::point_to_plane), 1);
-}
-
-TEST(Pairing, SelectsByPlaceNotByPosition) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<float> coordinate(-5, 5);
-  std::vector<Eigen::Vector3f> points;
-  for (int i = 0; i < 5000; ++i)
-    points.emplace_back(coordinate(random), coordinate(random), coordinate(random));
-  // The same scan with its first point lost and all others moved by a twentieth of a millimetre.
-  std::vector<Eigen::Vector3f> other(points.begin() + 1, points.end());
-  for (Eigen::Vector3f& p : other) p.x() += 5e-5f;
-  const auto chosen = stable_selection(points, 500), again = stable_selection(other, 500);
-  ASSERT_EQ(chosen.size(), 500u);
-  ASSERT_EQ(again.size(), 500u);
-  std::vector<std::uint32_t> shifted, common;
-  for (const std::uint32_t i : again) shifted.push_back(i + 1);
-  std::set_intersection(chosen.begin(), chosen.end(), shifted.begin(), shifted.end(),
-                        std::back_inserter(common));
-  EXPECT_GT(common.size(), 485u);
-  EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
-  EXPECT_EQ(stable_selection(std::span(points).first(3), 5), (std::vector<std::uint32_t>{0, 1, 2}));
-  EXPECT_TRUE(stable_selection({}, 5).empty());
 }
 
 }  // namespace
