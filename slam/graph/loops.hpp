@@ -8,6 +8,7 @@
 #include "slam/core/pose.hpp"
 #include "slam/core/progress.hpp"
 #include "slam/graph/pose_graph.hpp"
+#include "slam/graph/see_through.hpp"
 #include "slam/registration/icp.hpp"
 #include "slam/registration/matching_scan.hpp"
 
@@ -33,16 +34,18 @@ struct LoopParams {
   double step_rotation = radians(0.25);  ///< rad
   double max_deviation = 4;    ///< standard deviations a match may be off from what the path has
   double max_rms_ratio = 2.5;  ///< rms of a match, in median rms of the steps of the path
-  double least_gate = 0.3;     ///< m, first gate of a match however sure the path is
-  double most_gate = 3.0;      ///< m, the same however unsure
-  int max_rounds = 5;          ///< of looking for candidates with the loops so far closed
+  double max_contradicted = most_contradicted;  ///< share of the surfaces of one scan that rays of
+                                                ///< the other go through
+  double least_gate = 0.3;  ///< m, first gate of a match however sure the path is
+  double most_gate = 3.0;   ///< m, the same however unsure
+  int max_rounds = 5;       ///< of looking for candidates with the loops so far closed
 };
 
 /// Looks for scans that were taken near each other but not one after another: candidates by
 /// distance and overlap, given how uncertain the path between them is; each one verified by its
-/// match (overlap, rms, agreement with the path) and by the other loops. Returns all that were
-/// tried; those not accepted say why. Throws Error if the graph and the scans do not go together or
-/// a parameter is out of range.
+/// match (verified_loop) and by the other loops (consistent_loops, and all together). Returns all
+/// that were tried; those not accepted say why. Throws Error if the graph and the scans do not go
+/// together or a parameter is out of range.
 std::vector<Edge> find_loops(std::span<const MatchingScan> scans, const PoseGraph& graph,
                              const LoopMatcher& matcher, const LoopParams& params = {},
                              const Progress& progress = {});

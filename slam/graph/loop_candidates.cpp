@@ -1,0 +1,97 @@
+#include "slam/graph/loop_candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "slam/core/parallel.hpp"
+#include "slam/graph/path_covariance.hpp"
+#include "slam/registration/overlap.hpp"
+
+namespace planum {
+namespace {
+
+/// A gate reaches this many standard deviations of the guess.
+constexpr double gate_per_deviation = 3;
+
+/// m, standard deviation of where a pose with this covariance puts a point so far away.
+double placed_within(const Matrix6d& covariance, double radius) {
+  const double shift = covariance.diagonal().head<3>().maxCoeff();
+  const double turn = covariance.diagonal().tail<3>().maxCoeff();
+  return std::sqrt(shift + radius * radius * turn);
+}
+
+Matrix6d isotropic(double translation, double rotation) {
+  Vector6d variance;
+  variance << Eigen::Vector3d::Constant(translation * translation),
+      Eigen::Vector3d::Constant(rotation * rotation);
+  return variance.asDiagonal();
+}
+
+std::optional<LoopCandidate> considered(std::span<const MatchingScan> scans, LoopCandidate pair,
+                                        const WorthATry& worth_a_try, const LoopParams& params) {
+  if (pair.guess.translation().norm() > params.max_distance ||
+      placed_within(pair.covariance, scans[pair.to].radius) < params.known_within ||
+      !worth_a_try(pair))
+    return std::nullopt;
+  const OverlapParams near{.distance = pair.gate(params)};
+  const MatchingScan &from = scans[pair.from], &to = scans[pair.to];
+  pair.overlap = std::max(estimated_overlap(to, from, pair.guess, near),
+                          estimated_overlap(from, to, pair.guess.inverse(), near));
+  if (pair.overlap < params.min_overlap) return std::nullopt;
+  return pair;
+}
+
+std::vector<LoopCandidate> most_overlapping(const std::vector<LoopCandidate>& all,
+                                            std::size_t scans, std::size_t per_scan) {
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t x, std::size_t y) { return all[x].overlap > all[y].overlap; });
+  std::vector<std::size_t> count(scans, 0);
+  std::vector<LoopCandidate> result;
+  for (const std::size_t k : order) {
+    const LoopCandidate& pair = all[k];
+    if (std::min(count[pair.from], count[pair.to]) >= per_scan) continue;
+    ++count[pair.from];
+    ++count[pair.to];
+    result.push_back(pair);
+  }
+  return result;
+}
+
+}  // namespace
+
+double LoopCandidate::gate(const LoopParams& params) const {
+  return std::clamp(gate_per_deviation * std::sqrt(covariance.diagonal().head<3>().maxCoeff()),
+                    params.least_gate, params.most_gate);
+}
+
+Matrix6d step_noise(const LoopParams& params) {
+  return isotropic(params.step_translation, params.step_rotation);
+}
+
+Matrix6d unknown_pose(const LoopParams& params) { return isotropic(params.most_gate, pi / 4); }
+
+std::vector<LoopCandidate> loop_candidates(std::span<const MatchingScan> scans,
+                                           const PoseGraph& graph, const WorthATry& worth_a_try,
+                                           std::size_t per_scan, const LoopParams& params) {
+  std::vector<std::vector<LoopCandidate>> of_scan(scans.size());
+  parallel_for(scans.size(), 1, [&](std::size_t from, std::size_t) {
+    const auto covariances = path_covariances(graph, from, step_noise(params));
+    for (std::size_t to = from + 2; to < scans.size(); ++to) {
+      const LoopCandidate pair{.from = from,
+                               .to = to,
+                               .guess = graph.poses[from].inverse() * graph.poses[to],
+                               .covariance = covariances[to].value_or(unknown_pose(params))};
+      if (const auto candidate = considered(scans, pair, worth_a_try, params))
+        of_scan[from].push_back(*candidate);
+    }
+  });
+  std::vector<LoopCandidate> all;
+  for (const auto& some : of_scan) all.insert(all.end(), some.begin(), some.end());
+  return most_overlapping(all, scans.size(), per_scan);
+}
+
+}  // namespace planum

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "slam/graph/loop_candidates.hpp"
+#include "slam/graph/loops.hpp"
+#include "slam/graph/pose_graph.hpp"
+#include "slam/graph/see_through.hpp"
+
+namespace planum {
+
+/// What a match is compared with.
+struct LoopEvidence {
+  double usual_rms = 0;  ///< m, of matches along the path; 0: unknown
+  /// Of the scans that a candidate joins.
+  const RangeView* from = nullptr;
+  const RangeView* to = nullptr;
+};
+
+/// Matches a candidate, from several starts where the path leaves it open by more than the least
+/// gate, and tests the match: overlap, rms, agreement with the path, rays of one scan through
+/// surfaces of the other, and that no other place fits as well. Not accepted says why.
+Edge verified_loop(const LoopCandidate& candidate, const LoopMatcher& matcher,
+                   const LoopEvidence& evidence, const LoopParams& params);
+
+/// How many standard deviations an error is.
+double deviation(const Vector6d& error, const Matrix6d& covariance);
+
+}  // namespace planum
