@@ -4,13 +4,14 @@
 //
 // usage: place_benchmark [SCENE]   SCENE: a part of the name of those to take
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <random>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "slam/graph/scan_plan.hpp"
 #include "slam/graph/see_through.hpp"
 #include "slam/registration/icp.hpp"
 #include "slam/registration/overlap.hpp"
@@ -22,8 +23,11 @@ namespace {
 using namespace planum;
 using testing::Scene;
 
+/// s, of this thread alone: other programs do not count.
 double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  timespec time;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 Pose true_motion(const Scene& scene, std::size_t target, std::size_t source) {
@@ -102,12 +106,52 @@ void print_free_space(const Scene& scene) {
              1000 * made / static_cast<double>(views.size()), 1000 * longest);
 }
 
+bool right(const Pose& found, const Pose& truth, double shift, double turn) {
+  const Pose off = truth.inverse() * found;
+  return off.translation().norm() < shift && rotation_angle(off) < turn;
+}
+
+/// Where among the matches of plans the right one is, for pairs with a lot in common.
+void print_plan_matches(const Scene& scene) {
+  const double begin = now();
+  std::vector<ScanPlan> plans;
+  for (const MatchingScan& scan : scene.scans) plans.push_back(scan_plan(scan));
+  const double made = now() - begin;
+  for (const auto& [low, high] : {std::pair{0.2, 0.35}, {0.35, 0.5}, {0.5, 1.0}}) {
+    std::size_t pairs = 0, first = 0, five = 0, any = 0;
+    double spent = 0;
+    for (std::size_t a = 0; a < scene.scans.size(); ++a)
+      for (std::size_t b = a + 1; b < scene.scans.size(); ++b) {
+        const double overlap = true_overlap(scene, a, b);
+        if (overlap < low || overlap >= high) continue;
+        ++pairs;
+        const double start = now();
+        const auto matches = matches_of_plans(plans[b], plans[a]);
+        spent += now() - start;
+        for (std::size_t k = 0; k < matches.size(); ++k) {
+          if (!right(matches[k].target_from_source, true_motion(scene, a, b), 0.6, radians(8)))
+            continue;
+          first += k == 0;
+          five += k < 5;
+          ++any;
+          break;
+        }
+      }
+    if (pairs > 0)
+      fmt::print("  plans, overlap {:.2f}-{:.2f}: {:4} pairs, right one first {:.2f}, among 5 {:.2f}, any {:.2f}; {:.1f} ms each\n",
+                 low, high, pairs, static_cast<double>(first) / static_cast<double>(pairs),
+                 static_cast<double>(five) / static_cast<double>(pairs), static_cast<double>(any) / static_cast<double>(pairs), 1000 * spent / static_cast<double>(pairs));
+  }
+  fmt::print("  {:.2f} ms a plan\n", 1000 * made / static_cast<double>(plans.size()));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string wanted = argc > 1 ? argv[1] : "";
-  testing::for_each_scene(wanted, [](const Scene& scene) {
+  testing::for_each_scene(wanted, [&](const Scene& scene) {
     fmt::print("{}: {} scans\n", scene.name, scene.scans.size());
-    print_free_space(scene);
+    print_plan_matches(scene);
+    if (argc > 2) print_free_space(scene);
   });
 }
