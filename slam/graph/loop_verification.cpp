@@ -40,7 +40,7 @@ std::vector<Pose> starts(const LoopCandidate& candidate, const LoopParams& param
 }
 
 /// The best of all matches, and in `reason` whether another place fits as well.
-Alignment best_match(const LoopCandidate& candidate, const LoopMatcher& matcher,
+Alignment best_match(const LoopCandidate& candidate, const GatedPairMatcher& matcher,
                      const LoopParams& params, std::string& reason) {
   std::vector<Alignment> matches;
   for (const Pose& start : starts(candidate, params))
@@ -93,7 +93,7 @@ double deviation(const Vector6d& error, const Matrix6d& covariance) {
   return std::sqrt(std::max(0.0, error.dot(covariance.ldlt().solve(error))));
 }
 
-Edge verified_loop(const LoopCandidate& candidate, const LoopMatcher& matcher,
+Edge verified_loop(const LoopCandidate& candidate, const GatedPairMatcher& matcher,
                    const LoopEvidence& evidence, const LoopParams& params) {
   std::string ambiguity;
   const Alignment alignment = best_match(candidate, matcher, params, ambiguity);

@@ -3,7 +3,7 @@
 #include "slam/graph/loop_candidates.hpp"
 #include "slam/graph/loops.hpp"
 #include "slam/graph/pose_graph.hpp"
-#include "slam/graph/see_through.hpp"
+#include "slam/registration/see_through.hpp"
 
 namespace planum {
 
@@ -18,7 +18,7 @@ struct LoopEvidence {
 /// Matches a candidate, from several starts where the path leaves it open by more than the least
 /// gate, and tests the match: overlap, rms, agreement with the path, rays of one scan through
 /// surfaces of the other, and that no other place fits as well. Not accepted says why.
-Edge verified_loop(const LoopCandidate& candidate, const LoopMatcher& matcher,
+Edge verified_loop(const LoopCandidate& candidate, const GatedPairMatcher& matcher,
                    const LoopEvidence& evidence, const LoopParams& params);
 
 /// How many standard deviations an error is.

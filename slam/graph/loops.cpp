@@ -44,7 +44,7 @@ void check(std::span<const MatchingScan> scans, const PoseGraph& graph, const Lo
 class LoopSearch {
  public:
   LoopSearch(std::span<const MatchingScan> scans, const PoseGraph& graph,
-             const LoopMatcher& matcher, const LoopParams& params)
+             const GatedPairMatcher& matcher, const LoopParams& params)
       : scans_(scans),
         graph_(graph),
         matcher_(matcher),
@@ -177,7 +177,7 @@ class LoopSearch {
 
   std::span<const MatchingScan> scans_;
   PoseGraph graph_;  ///< edges as they came; poses with the loops so far closed
-  const LoopMatcher& matcher_;
+  const GatedPairMatcher& matcher_;
   const LoopParams& params_;
   const PoseGraph path_;  ///< as it came
   double usual_rms_ = 0;  ///< m
@@ -187,18 +187,8 @@ class LoopSearch {
 
 }  // namespace
 
-LoopMatcher icp_loop_matcher(std::span<const MatchingScan> scans, const IcpParams& params) {
-  return [scans, params](std::size_t target, std::size_t source, const Pose& guess,
-                         double first_gate) {
-    IcpParams gated = params;
-    gated.first_gate = first_gate;
-    gated.last_gate = std::min(gated.last_gate, first_gate);
-    return icp_matcher(scans, gated)(target, source, guess);
-  };
-}
-
 std::vector<Edge> find_loops(std::span<const MatchingScan> scans, const PoseGraph& graph,
-                             const LoopMatcher& matcher, const LoopParams& params,
+                             const GatedPairMatcher& matcher, const LoopParams& params,
                              const Progress& progress) {
   check(scans, graph, params);
   return LoopSearch(scans, graph, matcher, params).run(progress);

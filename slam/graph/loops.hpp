@@ -1,26 +1,17 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "slam/core/pose.hpp"
 #include "slam/core/progress.hpp"
 #include "slam/graph/pose_graph.hpp"
-#include "slam/graph/see_through.hpp"
-#include "slam/registration/icp.hpp"
 #include "slam/registration/matching_scan.hpp"
+#include "slam/registration/pair_matchers.hpp"
+#include "slam/registration/see_through.hpp"
 
 namespace planum {
-
-/// As PairMatcher; `first_gate` (m) follows from how far off the guess may be.
-using LoopMatcher = std::function<Alignment(std::size_t target, std::size_t source,
-                                            const Pose& guess, double first_gate)>;
-
-/// Matches by align() with the gate in place of that of the parameters; the scans must outlive it.
-/// Errors say which scans.
-LoopMatcher icp_loop_matcher(std::span<const MatchingScan> scans, const IcpParams& params = {});
 
 struct LoopParams {
   double max_distance = 10;   ///< m, scans taken farther apart are no candidates
@@ -47,7 +38,7 @@ struct LoopParams {
 /// that were tried; those not accepted say why. Throws Error if the graph and the scans do not go
 /// together or a parameter is out of range.
 std::vector<Edge> find_loops(std::span<const MatchingScan> scans, const PoseGraph& graph,
-                             const LoopMatcher& matcher, const LoopParams& params = {},
+                             const GatedPairMatcher& matcher, const LoopParams& params = {},
                              const Progress& progress = {});
 
 }  // namespace planum

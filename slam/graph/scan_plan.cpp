@@ -142,7 +142,7 @@ void add_levels(const MatchingScan& scan, const Eigen::Matrix3f& turn, ScanPlan&
 
 void add_free(const MatchingScan& scan, const Eigen::Matrix3f& turn, ScanPlan& plan) {
   plan.free.assign(static_cast<std::size_t>(ScanPlan::width) * ScanPlan::width, 0);
-  for (const std::uint32_t i : stable_selection(scan.points, free_rays)) {
+  for (const std::uint32_t i : scan.selection(free_rays)) {
     const Eigen::Vector3f end = turn * scan.points[i];
     const float way = end.head<2>().norm(), height = std::abs(end.z());
     if (way < 0.5f) continue;

@@ -122,6 +122,14 @@ std::optional<LocalPlane> plane_through(std::span<const Neighbour> neighbours,
 
 double median(std::vector<float> values) { return values.empty() ? 0 : upper_median(values); }
 
+/// m, rms distance from the origin.
+double rms_range(std::span<const Eigen::Vector3f> points) {
+  if (points.empty()) return 0;
+  double squares = 0;
+  for (const Eigen::Vector3f& p : points) squares += p.squaredNorm();
+  return std::sqrt(squares / static_cast<double>(points.size()));
+}
+
 /// Fits the planes of points [begin, end) and notes the distances to the next points.
 void fit_planes(const Choice& choice, const MatchingScanParams& params, std::size_t begin,
                 std::size_t end, MatchingScan& scan, std::vector<float>& spacing) {
@@ -170,12 +178,43 @@ MatchingScan matching_scan(const Cloud& cloud, const MatchingScanParams& params)
     if (plane.known()) thickness.push_back(plane.thickness);
   scan.noise = median(std::move(thickness));
   scan.spacing = median(std::move(spacing));
-  double squares = 0;
-  for (const Eigen::Vector3f& p : scan.points) squares += p.squaredNorm();
-  if (!scan.points.empty())
-    scan.radius = std::sqrt(squares / static_cast<double>(scan.points.size()));
+  scan.radius = rms_range(scan.points);
   scan.patch_points = static_cast<double>(params.neighbours);
   return scan;
+}
+
+MatchingScan merged(std::span<const PlacedScan> scans) {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<LocalPlane> planes;
+  std::vector<std::uint32_t> coarse;
+  std::vector<double> noise, spacing, patch_points;
+  for (const auto& [scan, frame_from_scan] : scans) {
+    if (scan->points.empty()) continue;
+    const auto first = static_cast<std::uint32_t>(points.size());
+    const Eigen::Matrix3f turn = frame_from_scan.linear().cast<float>();
+    for (std::size_t i = 0; i < scan->points.size(); ++i) {
+      points.push_back((frame_from_scan * scan->points[i].cast<double>()).cast<float>());
+      LocalPlane plane = scan->planes[i];
+      plane.mean = (frame_from_scan * plane.mean.cast<double>()).cast<float>();
+      plane.normal = turn * plane.normal;
+      planes.push_back(plane);
+    }
+    for (const std::uint32_t i : scan->coarse) coarse.push_back(first + i);
+    noise.push_back(scan->noise);
+    spacing.push_back(scan->spacing);
+    patch_points.push_back(scan->patch_points);
+  }
+  MatchingScan result{.points = points,
+                      .planes = std::move(planes),
+                      .coarse = std::move(coarse),
+                      .shuffled = shuffled_by_place(points),
+                      .tree = KdTree(points)};
+  if (points.empty()) return result;
+  result.noise = upper_median(noise);
+  result.spacing = upper_median(spacing);
+  result.patch_points = upper_median(patch_points);
+  result.radius = rms_range(points);
+  return result;
 }
 
 }  // namespace planum

@@ -8,6 +8,7 @@
 
 #include "slam/core/cloud.hpp"
 #include "slam/core/kd_tree.hpp"
+#include "slam/core/pose.hpp"
 
 namespace planum {
 
@@ -56,5 +57,15 @@ struct MatchingScan {
 /// Reduces a scan (scanner frame, scanner at the origin) and fits planes to the neighbourhoods.
 /// Throws Error if a parameter is out of range or a point is not finite. An empty scan is fine.
 MatchingScan matching_scan(const Cloud& cloud, const MatchingScanParams& params = {});
+
+/// A scan and where it lies in a common frame.
+struct PlacedScan {
+  const MatchingScan* scan = nullptr;
+  Pose frame_from_scan = Pose::Identity();
+};
+
+/// All points of some scans with their surfaces, in the common frame; noise, spacing and points of
+/// a plane are the medians of theirs.
+MatchingScan merged(std::span<const PlacedScan> scans);
 
 }  // namespace planum

@@ -1,6 +1,7 @@
 #include "slam/registration/sequence.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,6 +19,9 @@ void check(std::span<const Pose> odometry, const SequenceParams& params) {
           "between 0 and 1");
   require(params.max_shift > 0, "max_shift", params.max_shift, "> 0 m");
   require(params.max_turn > 0, "max_turn", degrees(params.max_turn), "> 0 deg");
+  require(params.second_gate > 0, "second_gate", params.second_gate, "> 0 m");
+  require(params.second_min_overlap > 0 && params.second_min_overlap <= 1, "second_min_overlap",
+          params.second_min_overlap, "between 0 and 1");
   require(params.odometry.translation > 0, "odometry translation noise",
           params.odometry.translation, "> 0 m");
   require(params.odometry.rotation > 0, "odometry rotation noise",
@@ -28,34 +32,83 @@ void check(std::span<const Pose> odometry, const SequenceParams& params) {
           fmt::format("registration: the pose of scan {} of the sequence is not finite", i));
 }
 
-/// Empty if the match can be trusted.
-std::string distrust(const Alignment& alignment, const Pose& guess, const SequenceParams& params) {
-  const Pose correction = guess.inverse() * alignment.target_from_source;
-  const double shift = correction.translation().norm(), turn = rotation_angle(correction);
-  if (alignment.pairs == 0) return "too few pairs";
-  if (alignment.overlap < params.min_overlap)
-    return fmt::format("overlap {:.2f} is below {:.2f}", alignment.overlap, params.min_overlap);
-  if (!alignment.converged) return "the match did not converge";
-  if (shift > params.max_shift)
-    return fmt::format("moved {:.2f} m, more than {:.2f} m", shift, params.max_shift);
-  if (turn > params.max_turn)
-    return fmt::format("turned {:.1f} deg, more than {:.1f} deg", degrees(turn),
-                       degrees(params.max_turn));
-  return {};
+/// The matching of a sequence while it goes on.
+class Sequence {
+ public:
+  using FirstAttempt = std::function<Alignment(std::span<const Pose> earlier, const Pose& guess)>;
+
+  Sequence(FirstAttempt first, const SequenceParams& params, const SequenceAids& aids)
+      : first_(std::move(first)), params_(params), aids_(aids) {}
+
+  /// The step to the scan after the earlier ones.
+  SequenceStep step(std::span<const Pose> earlier, const Pose& guess) const {
+    const std::size_t target = earlier.size() - 1, source = earlier.size();
+    SequenceStep step{.alignment = first_(earlier, guess)};
+    step.reason = distrust(target, guess, step.alignment, params_.min_overlap);
+    const auto attempt = [&](const std::optional<Alignment>& alignment) {
+      if (!alignment || !distrust(target, guess, *alignment, params_.second_min_overlap).empty())
+        return;
+      step.alignment = *alignment;
+      step.reason.clear();
+    };
+    if (!step.reason.empty() && aids_.second)
+      attempt(aids_.second(target, source, guess, params_.second_gate));
+    if (!step.reason.empty() && aids_.metascan)
+      attempt(aids_.metascan(earlier, guess, params_.second_gate));
+    if (!step.reason.empty() && aids_.locate) attempt(aids_.locate(target, source));
+    step.matched = step.reason.empty();
+    if (!step.matched) step.alignment = {.target_from_source = guess};
+    step.odometry_information = odometry_information(guess, params_.odometry);
+    step.alignment.information += step.odometry_information;
+    return step;
+  }
+
+ private:
+  /// Empty if the match can be trusted.
+  std::string distrust(std::size_t target, const Pose& guess, const Alignment& alignment,
+                       double min_overlap) const {
+    const Pose correction = guess.inverse() * alignment.target_from_source;
+    const double shift = correction.translation().norm(), turn = rotation_angle(correction);
+    if (alignment.pairs == 0) return "too few pairs";
+    if (alignment.overlap < min_overlap)
+      return fmt::format("overlap {:.2f} is below {:.2f}", alignment.overlap, min_overlap);
+    if (!alignment.converged) return "the match did not converge";
+    if (params_.odometry_known && shift > params_.max_shift)
+      return fmt::format("moved {:.2f} m, more than {:.2f} m", shift, params_.max_shift);
+    if (params_.odometry_known && turn > params_.max_turn)
+      return fmt::format("turned {:.1f} deg, more than {:.1f} deg", degrees(turn),
+                         degrees(params_.max_turn));
+    const double contradicted =
+        aids_.contradicted ? aids_.contradicted(target, target + 1, alignment.target_from_source)
+                           : 0;
+    if (contradicted > params_.max_contradicted)
+      return fmt::format("rays of one scan go through {:.0f} % of the other's surfaces",
+                         100 * contradicted);
+    return {};
+  }
+
+  FirstAttempt first_;
+  const SequenceParams& params_;
+  const SequenceAids& aids_;
+};
+
+SequenceMatch matched(std::span<const Pose> odometry, const Sequence& sequence,
+                      const SequenceParams& params, const Progress& progress) {
+  check(odometry, params);
+  SequenceMatch result;
+  if (odometry.empty()) return result;
+  result.poses.push_back(odometry[0]);
+  for (std::size_t i = 1; i < odometry.size(); ++i) {
+    const Pose guess = odometry[i - 1].inverse() * odometry[i];
+    result.steps.push_back(sequence.step(result.poses, guess));
+    result.poses.push_back(
+        orthonormalized(result.poses.back() * result.steps.back().alignment.target_from_source));
+    progress.report(i, odometry.size() - 1);
+  }
+  return result;
 }
 
 }  // namespace
-
-PairMatcher icp_matcher(std::span<const MatchingScan> scans, const IcpParams& params) {
-  return [scans, params](std::size_t target, std::size_t source, const Pose& guess) {
-    try {
-      return align(scans[source], scans[target], guess, params);
-    } catch (Error& error) {
-      error.add_context(fmt::format("matching scan {} with scan {}", source, target));
-      throw;
-    }
-  };
-}
 
 Matrix6d odometry_information(const Pose& motion, const OdometryNoise& noise) {
   const double way = motion.translation().norm(), turn = rotation_angle(motion);
@@ -69,28 +122,21 @@ Matrix6d odometry_information(const Pose& motion, const OdometryNoise& noise) {
 }
 
 SequenceMatch match_in_order(std::span<const Pose> odometry, const PairMatcher& matcher,
-                             const SequenceParams& params, const Progress& progress) {
-  check(odometry, params);
-  SequenceMatch result;
-  if (odometry.empty()) return result;
-  result.poses.push_back(odometry[0]);
-  for (std::size_t i = 1; i < odometry.size(); ++i) {
-    const Pose guess = odometry[i - 1].inverse() * odometry[i];
-    SequenceStep step{.alignment = matcher(i - 1, i, guess)};
-    step.reason = distrust(step.alignment, guess, params);
-    step.matched = step.reason.empty();
-    if (!step.matched) {
-      step.alignment.target_from_source = guess;
-      step.alignment.information.setZero();
-    }
-    step.odometry_information = odometry_information(guess, params.odometry);
-    step.alignment.information += step.odometry_information;
-    result.poses.push_back(
-        orthonormalized(result.poses.back() * step.alignment.target_from_source));
-    result.steps.push_back(std::move(step));
-    progress.report(i, odometry.size() - 1);
-  }
-  return result;
+                             const SequenceParams& params, const Progress& progress,
+                             const SequenceAids& aids) {
+  const auto first = [&](std::span<const Pose> earlier, const Pose& guess) {
+    return matcher(earlier.size() - 1, earlier.size(), guess);
+  };
+  return matched(odometry, Sequence(first, params, aids), params, progress);
+}
+
+SequenceMatch match_to_metascan(std::span<const Pose> odometry, const MetascanMatcher& matcher,
+                                const SequenceParams& params, const Progress& progress,
+                                const SequenceAids& aids) {
+  const auto first = [&](std::span<const Pose> earlier, const Pose& guess) {
+    return matcher(earlier, guess, 0);
+  };
+  return matched(odometry, Sequence(first, params, aids), params, progress);
 }
 
 }  // namespace planum

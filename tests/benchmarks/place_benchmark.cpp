@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "slam/graph/scan_plan.hpp"
-#include "slam/graph/see_through.hpp"
+#include "slam/registration/see_through.hpp"
 #include "slam/registration/icp.hpp"
 #include "slam/registration/overlap.hpp"
 #include "tests/benchmarks/place_scenes.hpp"

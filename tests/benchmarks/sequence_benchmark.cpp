@@ -182,7 +182,7 @@ int main(int argc, char** argv) {
   const Time matched = now();
   print_error("matched", sequence.poses, truth);
   PoseGraph graph = pose_graph(sequence);
-  const std::vector<Edge> loops = find_loops(scans, graph, icp_loop_matcher(scans));
+  const std::vector<Edge> loops = find_loops(scans, graph, icp_gated_matcher(scans));
   graph.edges.insert(graph.edges.end(), loops.begin(), loops.end());
   const Time closed = now();
   const GraphResult result = relax_lu_milios(graph, scans);

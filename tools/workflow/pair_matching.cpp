@@ -57,7 +57,7 @@ PairMatcher PairMatching::matcher() {
   };
 }
 
-LoopMatcher PairMatching::loop_matcher() {
+GatedPairMatcher PairMatching::loop_matcher() {
   return [this](std::size_t target, std::size_t source, const Pose& guess, double first_gate) {
     return align(target, source, guess, first_gate);
   };

@@ -26,7 +26,7 @@ class PairMatching {
 
   /// For functions that match; it must outlive their calls.
   PairMatcher matcher();
-  LoopMatcher loop_matcher();
+  GatedPairMatcher loop_matcher();
 
  private:
   Results& results_;

@@ -42,7 +42,7 @@ Walk walk(double drift) {
 
 TEST(Loops, AreFoundWhereThePathComesBack) {
   const Walk w = walk(0.05);
-  const std::vector<Edge> loops = find_loops(w.scans, w.graph, icp_loop_matcher(w.scans));
+  const std::vector<Edge> loops = find_loops(w.scans, w.graph, icp_gated_matcher(w.scans));
   ASSERT_FALSE(loops.empty());
   bool closed = false;
   for (const Edge& loop : loops) {
@@ -61,7 +61,7 @@ TEST(Loops, AreTheSameForAnyNumberOfThreads) {
   const Walk w = walk(0.05);
   const auto with = [&](int threads) {
     const testing::ThreadCount count(threads);
-    return find_loops(w.scans, w.graph, icp_loop_matcher(w.scans));
+    return find_loops(w.scans, w.graph, icp_gated_matcher(w.scans));
   };
   const std::vector<Edge> one = with(1), many = with(4);
   ASSERT_EQ(one.size(), many.size());
@@ -72,7 +72,7 @@ TEST(Loops, AreTheSameForAnyNumberOfThreads) {
 }
 
 /// A matcher that answers what it is told, wherever it is asked.
-LoopMatcher answer(double shift, double overlap, double rms, bool converged = true) {
+GatedPairMatcher answer(double shift, double overlap, double rms, bool converged = true) {
   return [=](std::size_t, std::size_t, const Pose& guess, double) {
     Alignment alignment{.target_from_source = guess * Pose(Eigen::Translation3d(shift, 0, 0)),
                         .information = 1e6 * Matrix6d::Identity()};
@@ -86,7 +86,7 @@ LoopMatcher answer(double shift, double overlap, double rms, bool converged = tr
 
 TEST(Loops, AreRejectedWithAReason) {
   const Walk w = walk(0);
-  const auto reason = [&](const LoopMatcher& matcher) {
+  const auto reason = [&](const GatedPairMatcher& matcher) {
     const std::vector<Edge> loops = find_loops(w.scans, w.graph, matcher);
     EXPECT_FALSE(loops.empty());
     for (const Edge& loop : loops) EXPECT_EQ(loop.accepted, loop.reason.empty());
@@ -103,8 +103,8 @@ TEST(Loops, AreRejectedWithAReason) {
 TEST(Loops, ThatOthersContradictAreDropped) {
   const Walk w = walk(0);
   // 0-2 and 1-3 as the path has them; 0-3 off by what the path alone would still believe.
-  const LoopMatcher matcher = [&](std::size_t target, std::size_t source, const Pose& guess,
-                                  double gate) {
+  const GatedPairMatcher matcher = [&](std::size_t target, std::size_t source, const Pose& guess,
+                                       double gate) {
     return answer(source - target == 3 ? 0.25 : 0.0, 0.6, 0.003)(target, source, guess, gate);
   };
   PoseGraph unsure_in_the_middle = w.graph;
@@ -126,7 +126,8 @@ TEST(Loops, AreNotLookedForFarAway) {
   Walk w = walk(0);
   w.graph.poses[3] = Pose(Eigen::Translation3d(30, 0, 0)) * w.graph.poses[3];
   w.graph.edges[2].from_from_to = w.graph.poses[2].inverse() * w.graph.poses[3];
-  const LoopMatcher matcher = [](std::size_t, std::size_t source, const Pose& guess, double gate) {
+  const GatedPairMatcher matcher = [](std::size_t, std::size_t source, const Pose& guess,
+                                      double gate) {
     EXPECT_NE(source, 3u);
     return answer(0, 0.6, 0.003)(0, 0, guess, gate);
   };
@@ -136,18 +137,18 @@ TEST(Loops, AreNotLookedForFarAway) {
 TEST(Loops, NeedScansThatSeeSomething) {
   Walk w = walk(0);
   for (MatchingScan& scan : w.scans) scan = matching_scan({});
-  EXPECT_TRUE(find_loops(w.scans, w.graph, icp_loop_matcher(w.scans)).empty());
-  EXPECT_TRUE(find_loops({}, {}, icp_loop_matcher({})).empty());
+  EXPECT_TRUE(find_loops(w.scans, w.graph, icp_gated_matcher(w.scans)).empty());
+  EXPECT_TRUE(find_loops({}, {}, icp_gated_matcher({})).empty());
 }
 
 TEST(Loops, RefuseBadInput) {
   const Walk w = walk(0);
   EXPECT_NE(message_of([&] {
-              find_loops(w.scans, {}, icp_loop_matcher(w.scans));
+              find_loops(w.scans, {}, icp_gated_matcher(w.scans));
             }).find("loops: the number of poses must be that of the scans, got 0"),
             std::string::npos);
   EXPECT_NE(message_of([&] {
-              find_loops(w.scans, w.graph, icp_loop_matcher(w.scans), {.min_overlap = 0});
+              find_loops(w.scans, w.graph, icp_gated_matcher(w.scans), {.min_overlap = 0});
             }).find("loops: min_overlap must be between 0 and 1, got 0"),
             std::string::npos);
 }

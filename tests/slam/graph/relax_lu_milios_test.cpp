@@ -234,7 +234,7 @@ TEST(ScanLink, KnowsTheDifferenceOfTwoSmallMotions) {
 GraphResult registered(const std::vector<MatchingScan>& scans, const std::vector<Pose>& odometry,
                        std::vector<Edge>* loops = nullptr) {
   PoseGraph graph = pose_graph(match_in_order(odometry, icp_matcher(scans)));
-  const std::vector<Edge> found = find_loops(scans, graph, icp_loop_matcher(scans));
+  const std::vector<Edge> found = find_loops(scans, graph, icp_gated_matcher(scans));
   graph.edges.insert(graph.edges.end(), found.begin(), found.end());
   if (loops) *loops = found;
   return relax_lu_milios(graph, scans);

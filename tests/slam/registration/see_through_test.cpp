@@ -1,4 +1,4 @@
-#include "slam/graph/see_through.hpp"
+#include "slam/registration/see_through.hpp"
 
 #include <random>
 

@@ -1,4 +1,4 @@
-#include "slam/graph/see_through.hpp"
+#include "slam/registration/see_through.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -132,8 +132,7 @@ RangeView range_view(const MatchingScan& scan, const RangeViewParams& params) {
     view.farthest[bin] = std::max(view.farthest[bin], range);
   }
   spread_returns(view);
-  const std::size_t most = params.samples == 0 ? scan.points.size() : params.samples;
-  for (const std::uint32_t i : stable_selection(scan.points, most))
+  for (const std::uint32_t i : scan.selection(params.samples))
     if (scan.planes[i].known()) view.samples.push_back({scan.smoothed(i), scan.planes[i].normal});
   return view;
 }

@@ -1,0 +1,128 @@
+#include "slam/graph/elch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include <Eigen/Cholesky>
+#include <fmt/format.h>
+
+#include "slam/core/error.hpp"
+
+namespace planum {
+namespace {
+
+constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+/// m; how much a rotation counts when ways are compared.
+constexpr double lever = 5;
+/// m^2; an edge whose information is singular says this little.
+constexpr double unsure = 1e4;
+
+struct Way {
+  std::size_t to;
+  double length;  ///< m^2, variance that the edge adds
+};
+
+double length_of(const Edge& edge) {
+  const Eigen::LLT<Matrix6d> factor(edge.information);
+  if (factor.info() != Eigen::Success) return unsure;
+  const Matrix6d covariance = factor.solve(Matrix6d::Identity());
+  const double length =
+      covariance.diagonal().head<3>().sum() + lever * lever * covariance.diagonal().tail<3>().sum();
+  return std::isfinite(length) ? std::min(length, unsure) : unsure;
+}
+
+/// The ways that lead farther from a start, nearest first.
+struct Tree {
+  std::vector<double> distance;          ///< m^2; infinite where no way leads
+  std::vector<std::size_t> parent;       ///< none at the start
+  std::vector<std::size_t> by_distance;  ///< reached poses
+};
+
+Tree shortest_ways(const std::vector<std::vector<Way>>& ways, std::size_t start) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  Tree tree{.distance = std::vector<double>(ways.size(), infinite),
+            .parent = std::vector<std::size_t>(ways.size(), none),
+            .by_distance = {}};
+  std::vector<bool> done(ways.size(), false);
+  using Entry = std::pair<double, std::size_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  tree.distance[start] = 0;
+  queue.emplace(0, start);
+  while (!queue.empty()) {
+    const std::size_t at = queue.top().second;
+    queue.pop();
+    if (done[at]) continue;
+    done[at] = true;
+    tree.by_distance.push_back(at);
+    for (const Way& way : ways[at]) {
+      const double there = tree.distance[at] + way.length;
+      if (there >= tree.distance[way.to]) continue;
+      tree.distance[way.to] = there;
+      tree.parent[way.to] = at;
+      queue.emplace(there, way.to);
+    }
+  }
+  return tree;
+}
+
+/// For each pose its share of the error between the start of the tree and `end`.
+std::vector<double> shares(const Tree& tree, std::size_t end) {
+  std::vector<double> result(tree.distance.size(), 0);
+  std::vector<bool> on_way(result.size(), false);
+  for (std::size_t at = end; at != none; at = tree.parent[at]) {
+    on_way[at] = true;
+    result[at] = tree.distance[end] > 0 ? tree.distance[at] / tree.distance[end] : 1;
+  }
+  for (const std::size_t at : tree.by_distance)
+    if (!on_way[at] && tree.parent[at] != none) result[at] = result[tree.parent[at]];
+  return result;
+}
+
+/// Turns about where the pose is, by a share of the turn, and shifts by that of the shift.
+Pose bent(const Pose& pose, const Eigen::AngleAxisd& turn, const Eigen::Vector3d& shift,
+          double share) {
+  Pose result = pose;
+  result.linear() =
+      Eigen::AngleAxisd(share * turn.angle(), turn.axis()).toRotationMatrix() * pose.linear();
+  result.translation() += share * shift;
+  return orthonormalized(result);
+}
+
+}  // namespace
+
+std::vector<Pose> elch(const PoseGraph& graph, double closed) {
+  std::vector<Pose> poses = graph.poses;
+  std::vector<std::vector<Way>> ways(poses.size());
+  const auto join = [&](const Edge& edge) {
+    const double length = length_of(edge);
+    ways[edge.from].push_back({edge.to, length});
+    ways[edge.to].push_back({edge.from, length});
+  };
+  for (std::size_t k = 0; k < graph.edges.size(); ++k) {
+    const Edge& edge = graph.edges[k];
+    if (edge.from >= poses.size() || edge.to >= poses.size())
+      throw Error(fmt::format("ELCH: edge {} joins poses {} and {}, but there are {} poses", k,
+                              edge.from, edge.to, poses.size()));
+    if (edge.accepted && edge.kind == EdgeKind::odometry) join(edge);
+  }
+  for (const Edge& loop : graph.edges) {
+    if (!loop.accepted || loop.kind != EdgeKind::loop) continue;
+    const Vector6d error = edge_error(loop, poses);
+    const bool open = error.dot(loop.information * error) > closed * closed;
+    const Tree tree = open ? shortest_ways(ways, loop.from) : Tree{};
+    if (open && std::isfinite(tree.distance[loop.to])) {
+      const Pose goal = poses[loop.from] * loop.from_from_to;
+      const Eigen::AngleAxisd turn(goal.linear() * poses[loop.to].linear().transpose());
+      const Eigen::Vector3d shift = goal.translation() - poses[loop.to].translation();
+      const std::vector<double> share = shares(tree, loop.to);
+      for (std::size_t i = 0; i < poses.size(); ++i)
+        poses[i] = bent(poses[i], turn, shift, share[i]);
+    }
+    join(loop);
+  }
+  return poses;
+}
+
+}  // namespace planum
