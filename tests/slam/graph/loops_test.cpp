@@ -19,7 +19,8 @@ struct Walk {
   PoseGraph graph;
 };
 
-/// Stops in the room that come back to where they began, with poses that drifted on the way.
+/// Stops in the room that come back to where they began, with poses that drifted on the way and are
+/// known to 5 cm at each step.
 Walk walk(double drift) {
   const Building room = testing::furnished_room();
   Walk w;
@@ -119,6 +120,39 @@ TEST(Loops, ThatOthersContradictAreDropped) {
     } else {
       EXPECT_TRUE(loop.accepted) << loop.from << "-" << loop.to << " " << loop.reason;
     }
+  }
+}
+
+TEST(Loops, AreRejectedWhereAnotherPlaceFitsAsWell) {
+  // Two places 0.8 m apart along x; the start decides.
+  const Walk w = walk(0);
+  PoseGraph unsure = w.graph;
+  for (Edge& edge : unsure.edges) edge.information = 4 * Matrix6d::Identity();
+  const GatedPairMatcher matcher = [&](std::size_t target, std::size_t source, const Pose& guess,
+                                       double gate) {
+    const Pose path = w.graph.poses[target].inverse() * w.graph.poses[source];
+    const Pose off = path.inverse() * guess;
+    const double place = off.translation().norm() > 0.3 ? 0.8 : 0.0;
+    return answer(0, 0.6, 0.003)(target, source, path * Pose(Eigen::Translation3d(place, 0, 0)),
+                                 gate);
+  };
+  LoopParams params;
+  params.max_contradicted = 1;
+  const std::vector<Edge> loops = find_loops(w.scans, unsure, matcher, params);
+  ASSERT_FALSE(loops.empty());
+  for (const Edge& loop : loops) {
+    EXPECT_FALSE(loop.accepted);
+    EXPECT_EQ(loop.reason, "a place 0.80 m and 0.0 deg from there fits as well");
+  }
+}
+
+TEST(Loops, AreRejectedWhereRaysGoThroughSurfaces) {
+  const Walk w = walk(0);
+  PoseGraph unsure = w.graph;
+  for (Edge& edge : unsure.edges) edge.information = 4 * Matrix6d::Identity();
+  for (const Edge& loop : find_loops(w.scans, unsure, answer(1.2, 0.6, 0.003))) {
+    EXPECT_FALSE(loop.accepted);
+    EXPECT_NE(loop.reason.find("rays of one scan go through"), std::string::npos) << loop.reason;
   }
 }
 

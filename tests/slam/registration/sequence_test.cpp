@@ -156,6 +156,83 @@ TEST(Sequence, RefusesPosesThatAreNotFinite) {
             std::string::npos);
 }
 
+/// A match of good quality, `shift` along x from the guess.
+Alignment good(const Pose& guess, double shift) {
+  Alignment alignment{.target_from_source = guess * Pose(Eigen::Translation3d(shift, 0, 0))};
+  alignment.pairs = 1000;
+  alignment.overlap = 0.8;
+  alignment.converged = true;
+  return alignment;
+}
+
+TEST(Sequence, TriesAgainInOrderWhereAMatchCannotBeTrusted) {
+  const std::vector<Pose> odometry(2, Pose::Identity());
+  const PairMatcher fails = [](std::size_t, std::size_t, const Pose& guess) {
+    return Alignment{.target_from_source = guess};
+  };
+  const auto shift_with = [&](const SequenceAids& aids) {
+    const SequenceStep step = match_in_order(odometry, fails, {}, {}, aids).steps.front();
+    EXPECT_EQ(step.matched, step.reason.empty());
+    return step.alignment.target_from_source.translation().x();
+  };
+  SequenceAids aids;
+  EXPECT_EQ(shift_with(aids), 0);
+  aids.locate = [](std::size_t target, std::size_t source) -> std::optional<Alignment> {
+    EXPECT_EQ(target + 1, source);
+    return good(Pose::Identity(), 0.3);
+  };
+  EXPECT_EQ(shift_with(aids), 0.3);
+  aids.metascan = [](std::span<const Pose> earlier, const Pose& guess, double gate) {
+    EXPECT_EQ(earlier.size(), 1u);
+    EXPECT_EQ(gate, SequenceParams{}.second_gate);
+    return good(guess, 0.2);
+  };
+  EXPECT_EQ(shift_with(aids), 0.2);
+  aids.second = [](std::size_t, std::size_t, const Pose& guess, double) {
+    return good(guess, 0.1);
+  };
+  EXPECT_EQ(shift_with(aids), 0.1);
+  aids.second = [](std::size_t, std::size_t, const Pose& guess, double) {
+    Alignment alignment = good(guess, 0.1);
+    alignment.overlap = 0.2;  // enough at once, not at a second attempt
+    return alignment;
+  };
+  EXPECT_EQ(shift_with(aids), 0.2);
+}
+
+TEST(Sequence, DoesNotBelieveAMatchWhoseRaysGoThroughSurfaces) {
+  const std::vector<Pose> odometry(2, Pose::Identity());
+  const PairMatcher matcher = [](std::size_t, std::size_t, const Pose& guess) {
+    return good(guess, 0.1);
+  };
+  SequenceAids aids;
+  aids.contradicted = [](std::size_t, std::size_t, const Pose& pose) {
+    return pose.translation().x() > 0.05 ? 0.3 : 0.0;
+  };
+  const SequenceStep step = match_in_order(odometry, matcher, {}, {}, aids).steps.front();
+  EXPECT_FALSE(step.matched);
+  EXPECT_EQ(step.reason, "rays of one scan go through 30 % of the other's surfaces");
+}
+
+TEST(Sequence, WithoutOdometryMayEndAnywhere) {
+  const std::vector<Pose> odometry(2, Pose::Identity());
+  const PairMatcher matcher = [](std::size_t, std::size_t, const Pose& guess) {
+    return good(guess, 5);
+  };
+  EXPECT_FALSE(match_in_order(odometry, matcher).steps.front().matched);
+  EXPECT_TRUE(match_in_order(odometry, matcher, {.odometry_known = false}).steps.front().matched);
+}
+
+TEST(Sequence, FollowsTheWayOnAMetascan) {
+  const Walk w = walk();
+  std::mt19937 random(4);
+  const SequenceMatch match =
+      match_to_metascan(drifting(w.truth, random), icp_metascan_matcher(w.scans));
+  for (std::size_t i = 0; i < w.truth.size(); ++i)
+    EXPECT_LT(shift_between(match.poses[i], w.truth[i]), 0.006);
+  for (const SequenceStep& step : match.steps) EXPECT_TRUE(step.matched) << step.reason;
+}
+
 TEST(OdometryInformation, GrowsWeakerWithTheWay) {
   const Matrix6d near = odometry_information(Pose(Eigen::Translation3d(0.1, 0, 0)));
   const Matrix6d far = odometry_information(Pose(Eigen::Translation3d(10, 0, 0)));
