@@ -94,14 +94,7 @@ Vector6d solution(const Equations& equations) {
 
 }  // namespace
 
-SurfaceDistances surface_distances(std::span<const Eigen::Vector3d> points,
-                                   const SurfaceTree& surface, double within) {
-  if (!(within >= 0)) throw Error(fmt::format("evaluation: within must be >= 0 m, got {}", within));
-  check(points);
-  std::vector<double> distances(points.size());
-  parallel_for(points.size(), block_size, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) distances[i] = surface.nearest(points[i])->distance;
-  });
+SurfaceDistances distance_figures(std::vector<double> distances, double within) {
   std::sort(distances.begin(), distances.end());
   const ErrorStatistics s = statistics(distances);
   SurfaceDistances result{.count = s.count,
@@ -116,6 +109,17 @@ SurfaceDistances surface_distances(std::span<const Eigen::Vector3d> points,
     result.share_within =
         static_cast<double>(beyond - distances.begin()) / static_cast<double>(s.count);
   return result;
+}
+
+SurfaceDistances surface_distances(std::span<const Eigen::Vector3d> points,
+                                   const SurfaceTree& surface, double within) {
+  if (!(within >= 0)) throw Error(fmt::format("evaluation: within must be >= 0 m, got {}", within));
+  check(points);
+  std::vector<double> distances(points.size());
+  parallel_for(points.size(), block_size, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) distances[i] = surface.nearest(points[i])->distance;
+  });
+  return distance_figures(std::move(distances), within);
 }
 
 SurfaceFit fit_to_surface(std::span<const Eigen::Vector3d> points, const SurfaceTree& surface,

@@ -17,6 +17,9 @@ struct SurfaceDistances {
   double within = 0;        ///< m
 };
 
+/// The figures of distances, in any order.
+SurfaceDistances distance_figures(std::vector<double> distances, double within = 0.02);
+
 /// Throws Error if a point is not finite or within is negative. All zero if there are no points.
 SurfaceDistances surface_distances(std::span<const Eigen::Vector3d> points,
                                    const SurfaceTree& surface, double within = 0.02);

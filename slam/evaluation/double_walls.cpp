@@ -1,4 +1,4 @@
-#include "slam/evaluation/wall_gap.hpp"
+#include "slam/evaluation/double_walls.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +21,7 @@ namespace {
 /// m; what fits better than floats can say needs no more care.
 constexpr double rounding = 1e-6;
 
-void check(const WallGapParams& params) {
+void check(const DoubleWallParams& params) {
   const auto require = [](bool good, const char* option, auto value, const char* limit) {
     if (!good) throw Error(fmt::format("evaluation: {} must be {}, got {}", option, limit, value));
   };
@@ -48,24 +48,32 @@ Cloud with_normals(const Cloud& cloud) {
   return result;
 }
 
-/// One point in each cube of the patches' size and for each of six directions it may face.
-std::vector<std::size_t> seeds(const Cloud& cloud, const WallGapParams& params) {
+/// m, how far across a surface its points may lie before it is known.
+double reach(const DoubleWallParams& params) { return 3 * params.max_thickness; }
+
+/// One point in each cell of the patches' size and for each of six directions it may face, where
+/// there are enough to make up a patch with those around.
+std::vector<std::size_t> seeds(const Cloud& cloud, const DoubleWallParams& params) {
   using Key = std::array<long, 4>;
   std::vector<std::pair<Key, std::size_t>> keys;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-    Eigen::Index axis = 0;
-    cloud.normals[i].cwiseAbs().maxCoeff(&axis);
+    Eigen::Index facing = 0;
+    cloud.normals[i].cwiseAbs().maxCoeff(&facing);
     Key key{};
-    for (std::size_t k = 0; k < 3; ++k)
-      key[k] = std::lround(
-          std::floor(cloud.points[i][static_cast<Eigen::Index>(k)] / params.patch_radius));
-    key[3] = 2 * axis + (cloud.normals[i][axis] < 0 ? 1 : 0);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      // Flat across the surface, so that one does not hide another behind it.
+      const double edge = axis == facing ? reach(params) : params.patch_radius;
+      key[static_cast<std::size_t>(axis)] = std::lround(std::floor(cloud.points[i][axis] / edge));
+    }
+    key[3] = 2 * facing + (cloud.normals[i][facing] < 0 ? 1 : 0);
     keys.emplace_back(key, i);
   }
   std::sort(keys.begin(), keys.end());
   std::vector<std::size_t> first;
-  for (std::size_t k = 0; k < keys.size(); ++k)
-    if (k == 0 || keys[k].first != keys[k - 1].first) first.push_back(keys[k].second);
+  for (std::size_t begin = 0, end = 1; begin < keys.size(); begin = end++) {
+    while (end < keys.size() && keys[end].first == keys[begin].first) ++end;
+    if (4 * (end - begin) >= params.min_points) first.push_back(keys[begin].second);
+  }
   std::vector<std::size_t> result;
   for (const std::size_t k : evenly_chosen(first.size(), params.max_patches))
     result.push_back(first[k]);
@@ -97,7 +105,7 @@ double robust_mean(std::span<const double> ascending) {
 /// A group of scans, to be searched.
 class Group {
  public:
-  Group(const Cloud& cloud, const WallGapParams& params)
+  Group(const Cloud& cloud, const DoubleWallParams& params)
       : cloud_(cloud),
         tree_(cloud_.points),
         params_(params),
@@ -115,7 +123,7 @@ class Group {
     for (const Neighbour& n : near) {
       const Eigen::Vector3f offset = cloud_.points[n.index] - at;
       if (cloud_.normals[n.index].dot(facing) < least_cosine_ ||
-          std::abs(offset.dot(facing)) > 3 * params_.max_thickness)
+          std::abs(offset.dot(facing)) > reach(params_))
         continue;
       points.push_back(offset.cast<double>());
     }
@@ -133,8 +141,10 @@ class Group {
     return fit;
   }
 
-  /// m, the surfaces before (+) and behind a patch that face as it does, ascending.
-  std::vector<double> surfaces(const PlaneFit& patch, std::vector<Neighbour>& near) const {
+  /// m, the surfaces before (+) and behind a patch that face as it does and have enough points,
+  /// ascending.
+  std::vector<double> surfaces(const PlaneFit& patch, std::size_t least_points,
+                               std::vector<Neighbour>& near) const {
     const double radius = std::hypot(params_.patch_radius, params_.max_gap);
     tree_.within(patch.centroid.cast<float>(), static_cast<float>(radius), near);
     const Eigen::Vector3f normal = patch.plane.normal.cast<float>();
@@ -152,7 +162,7 @@ class Group {
     for (std::size_t begin = 0, end = 1; begin < distances.size(); begin = end++) {
       while (end < distances.size() && distances[end] - distances[end - 1] <= params_.separation)
         ++end;
-      if (end - begin >= params_.min_points)
+      if (end - begin >= least_points)
         result.push_back(robust_mean(std::span(distances).subspan(begin, end - begin)));
     }
     return result;
@@ -177,7 +187,7 @@ class Group {
 
   Cloud cloud_;
   KdTree tree_;
-  const WallGapParams& params_;
+  const DoubleWallParams& params_;
   float least_cosine_;
 };
 
@@ -190,38 +200,40 @@ std::optional<double> nearest_to(double value, const std::vector<double>& values
   return *nearest;
 }
 
-std::optional<WallGapPatch> compared(const Group& first, const Group& second, std::size_t seed) {
+std::optional<DoubleWallPatch> compared(const Group& first, const Group& second, std::size_t seed,
+                                        std::size_t min_points) {
   std::vector<Neighbour> near;
   const auto patch = first.plane_at(seed, near);
   if (!patch) return std::nullopt;
-  const auto gap = nearest_to(0, second.surfaces(*patch, near));
+  const auto gap = nearest_to(0, second.surfaces(*patch, min_points, near));
   if (!gap) return std::nullopt;
-  // The other way round it must be the same pair of surfaces.
-  const std::vector<double> own = first.surfaces(*patch, near);
+  // The other way round it must be the same pair of surfaces; against it, few points say enough.
+  const std::vector<double> own = first.surfaces(*patch, (min_points + 2) / 3, near);
   if (nearest_to(*gap, own) != nearest_to(0, own)) return std::nullopt;
-  return WallGapPatch{patch->centroid, patch->plane.normal, *gap};
+  return DoubleWallPatch{patch->centroid, patch->plane.normal, *gap};
 }
 
 }  // namespace
 
-std::vector<WallGapPatch> wall_gaps(const Cloud& first, const Cloud& second,
-                                    const WallGapParams& params) {
+std::vector<DoubleWallPatch> double_walls(const Cloud& first, const Cloud& second,
+                                          const DoubleWallParams& params) {
   check(params);
   const Group a(with_normals(first), params), b(with_normals(second), params);
   const std::vector<std::size_t> places = seeds(a.cloud(), params);
-  std::vector<std::optional<WallGapPatch>> of_place(places.size());
+  std::vector<std::optional<DoubleWallPatch>> of_place(places.size());
   parallel_for(places.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) of_place[k] = compared(a, b, places[k]);
+    for (std::size_t k = begin; k < end; ++k)
+      of_place[k] = compared(a, b, places[k], params.min_points);
   });
-  std::vector<WallGapPatch> result;
+  std::vector<DoubleWallPatch> result;
   for (const auto& patch : of_place)
     if (patch) result.push_back(*patch);
   return result;
 }
 
-WallGap summary(std::span<const WallGapPatch> patches) {
+DoubleWallGap double_wall_gap(std::span<const DoubleWallPatch> patches) {
   std::vector<double> gaps;
-  for (const WallGapPatch& patch : patches) gaps.push_back(std::abs(patch.gap));
+  for (const DoubleWallPatch& patch : patches) gaps.push_back(std::abs(patch.gap));
   std::sort(gaps.begin(), gaps.end());
   const ErrorStatistics s = statistics(gaps);
   return {.patches = s.count,

@@ -9,7 +9,7 @@
 
 namespace planum {
 
-struct WallGapParams {
+struct DoubleWallParams {
   double patch_radius = 0.25;  ///< m, of the pieces of surface that are compared
   double max_gap = 0.3;        ///< m, surfaces farther apart are not taken for the same
   double separation = 0.03;    ///< m, a void this deep parts two surfaces of one group
@@ -21,14 +21,14 @@ struct WallGapParams {
 };
 
 /// A piece of surface that both groups see.
-struct WallGapPatch {
+struct DoubleWallPatch {
   Eigen::Vector3d centre;  ///< m, of the first group's points
   Eigen::Vector3d normal;  ///< unit, of the first group's plane, towards the scanner
   double gap = 0;          ///< m, how far the second group's surface is in front of it
 };
 
 /// Over the patches; absolute values in m.
-struct WallGap {
+struct DoubleWallGap {
   std::size_t patches = 0;
   double median = 0, mean = 0, percentile_90 = 0, max = 0;
 };
@@ -39,9 +39,9 @@ struct WallGap {
 /// surface counts, unless the first group has a surface nearer to that: so the sides of a thin wall
 /// and furniture in front of one are not taken for a gap. Points without a normal have no part.
 /// Throws Error if points have no normals, are not finite, or a parameter is out of range.
-std::vector<WallGapPatch> wall_gaps(const Cloud& first, const Cloud& second,
-                                    const WallGapParams& params = {});
+std::vector<DoubleWallPatch> double_walls(const Cloud& first, const Cloud& second,
+                                          const DoubleWallParams& params = {});
 
-WallGap summary(std::span<const WallGapPatch> patches);
+DoubleWallGap double_wall_gap(std::span<const DoubleWallPatch> patches);
 
 }  // namespace planum
