@@ -1,9 +1,16 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
 #include <fmt/format.h>
 
 #include "tools/planum/evaluation_output.hpp"
 
 namespace planum {
 namespace {
+
+/// Rows that a person reads.
+constexpr std::size_t most_loops = 40;
 
 const char* name(TrajectoryAlignment alignment) {
   switch (alignment) {
@@ -102,17 +109,65 @@ std::string residual(const EdgeResidual& r) {
                      r.deviations);
 }
 
+std::string loop_row(const LoopEvaluation& loop) {
+  std::string text =
+      fmt::format("  {:<12}{}{}{}", fmt::format("{} - {}", loop.from, loop.to),
+                  residual(loop.odometry), residual(loop.before), residual(loop.after));
+  if (loop.held_out) text += residual(*loop.held_out);
+  return text + (loop.accepted ? "\n" : "  rejected: " + loop.reason + "\n");
+}
+
+/// Each figure of a residual by itself.
+EdgeResidual median(const std::vector<EdgeResidual>& residuals) {
+  const auto of = [&](double EdgeResidual::*figure) {
+    std::vector<double> values;
+    for (const EdgeResidual& r : residuals) values.push_back(r.*figure);
+    return statistics(values).median;
+  };
+  return {of(&EdgeResidual::translation), of(&EdgeResidual::rotation),
+          of(&EdgeResidual::deviations)};
+}
+
+std::string median_row(const std::vector<LoopEvaluation>& loops) {
+  std::vector<EdgeResidual> odometry, before, after, held_out;
+  for (const LoopEvaluation& loop : loops) {
+    if (!loop.accepted) continue;
+    odometry.push_back(loop.odometry);
+    before.push_back(loop.before);
+    after.push_back(loop.after);
+    if (loop.held_out) held_out.push_back(*loop.held_out);
+  }
+  if (odometry.empty()) return "";
+  return fmt::format("  {:<12}{}{}{}{}  median of {} accepted\n", "", residual(median(odometry)),
+                     residual(median(before)), residual(median(after)), residual(median(held_out)),
+                     odometry.size());
+}
+
+/// Those farthest off the map, or off what a graph without them says, in the order of the graph.
+std::vector<LoopEvaluation> worst_loops(const std::vector<LoopEvaluation>& loops) {
+  const auto off = [](const LoopEvaluation& loop) {
+    return std::max(loop.after.deviations, loop.held_out ? loop.held_out->deviations : 0);
+  };
+  if (loops.size() <= most_loops) return loops;
+  std::vector<double> all;
+  for (const LoopEvaluation& loop : loops) all.push_back(off(loop));
+  std::sort(all.begin(), all.end(), std::greater<>());
+  std::vector<LoopEvaluation> worst;
+  for (const LoopEvaluation& loop : loops)
+    if (off(loop) >= all[most_loops - 1] && worst.size() < most_loops) worst.push_back(loop);
+  return worst;
+}
+
 std::string loops_text(const MapEvaluation& map) {
   if (map.loops.empty()) return "loops: none\n\n";
   std::string text = fmt::format(
       "loops: residual in m, degrees, standard deviations\n  {:<12}{:>21}{:>21}{:>21}{:>21}\n", "",
       "odometry", "in order", "map", "held out");
-  for (const LoopEvaluation& loop : map.loops) {
-    text += fmt::format("  {:<12}{}{}{}", fmt::format("{} - {}", loop.from, loop.to),
-                        residual(loop.odometry), residual(loop.before), residual(loop.after));
-    if (loop.held_out) text += residual(*loop.held_out);
-    text += loop.accepted ? "\n" : "  rejected: " + loop.reason + "\n";
-  }
+  for (const LoopEvaluation& loop : worst_loops(map.loops)) text += loop_row(loop);
+  text += median_row(map.loops);
+  if (map.loops.size() > most_loops)
+    text += fmt::format("  of {} loops the {} that are farthest off; --json has all\n",
+                        map.loops.size(), most_loops);
   if (map.held_out_converged < map.held_out_solved)
     text += fmt::format("  {} of {} graphs without some loops did not converge\n",
                         map.held_out_solved - map.held_out_converged, map.held_out_solved);
