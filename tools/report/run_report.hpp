@@ -70,7 +70,7 @@ struct GapFigures {
   double median = 0, percentile_90 = 0;  ///< m
 };
 
-/// How good the map is, without a truth.
+/// How good the map is, without a truth. NaN where there are too few points.
 struct MapFigures {
   double entropy = 0;                             ///< nats
   double plane_thickness = 0;                     ///< m

@@ -1,6 +1,7 @@
 #include "tools/workflow/map_evaluation.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "slam/evaluation/sampling.hpp"
 
@@ -129,8 +130,10 @@ MapEvaluation evaluate_map(const World& world, const Cloud& cloud, const Sequenc
 
 MapFigures map_figures(const MapEvaluation& evaluation) {
   MapFigures figures;
-  figures.entropy = evaluation.sharpness.mean_entropy;
-  figures.plane_thickness = evaluation.sharpness.plane_thickness;
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const bool measured = evaluation.sharpness.measured > 0;
+  figures.entropy = measured ? evaluation.sharpness.mean_entropy : unknown;
+  figures.plane_thickness = measured ? evaluation.sharpness.plane_thickness : unknown;
   const auto gap = [](const DoubleWallGap& walls) -> std::optional<GapFigures> {
     if (walls.patches == 0) return std::nullopt;
     return GapFigures{walls.median, walls.percentile_90};
