@@ -1,24 +1,15 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <utility>
 #include <vector>
 
 #include "slam/core/pose.hpp"
 #include "slam/core/trajectory.hpp"
+#include "slam/evaluation/error_statistics.hpp"
+#include "slam/evaluation/pose_matching.hpp"
 
 namespace planum {
-
-/// As evo (Grupp 2017) has them: std over all values (not n - 1), median the mean of the two in the
-/// middle. All zero if there are no values.
-struct ErrorStatistics {
-  double rmse = 0, mean = 0, median = 0, std = 0, min = 0, max = 0;
-  double sse = 0;  ///< sum of squares
-  std::size_t count = 0;
-};
-
-ErrorStatistics statistics(std::span<const double> errors);
 
 /// How an estimate is laid onto the truth before poses are compared.
 enum class TrajectoryAlignment {
@@ -46,12 +37,6 @@ struct TrajectoryError {
   ErrorStatistics rpe_translation, rpe_rotation;  ///< relative pose error; count 0 if too few poses
   std::vector<double> ape_translations, ape_rotations;  ///< for each match
 };
-
-/// Pairs of poses with the nearest stamps, not farther apart than max_difference: for each pose of
-/// the shorter trajectory (the estimate if they are as long) its nearest one in the other.
-std::vector<std::pair<std::size_t, std::size_t>> associated(const Trajectory& estimate,
-                                                            const Trajectory& truth,
-                                                            double max_difference);
 
 /// Absolute and relative pose errors as evo computes them. Throws Error if a pose or stamp is not
 /// finite, no stamps belong together, or a parameter is out of range.

@@ -40,17 +40,54 @@ Json registration_json(const RegistrationFigures& registration) {
 }
 
 Json trajectory_json(const TrajectoryFigures& errors) {
-  return {{"ate_rmse_m", errors.ate_rmse},
-          {"ate_max_m", errors.ate_max},
-          {"rot_mean_deg", degrees(errors.rot_mean)},
-          {"rot_max_deg", degrees(errors.rot_max)},
-          {"rpe_trans_m", errors.rpe_trans},
-          {"rpe_rot_deg", degrees(errors.rpe_rot)}};
+  Json json = {{"ate_rmse_m", errors.ate_rmse},
+               {"ate_max_m", errors.ate_max},
+               {"rot_mean_deg", degrees(errors.rot_mean)},
+               {"rot_max_deg", degrees(errors.rot_max)},
+               {"rpe_trans_m", errors.rpe_trans},
+               {"rpe_rot_deg", degrees(errors.rpe_rot)}};
+  if (errors.drift)
+    json["rpe_per_metre"] = {{"trans_m", errors.drift->trans},
+                             {"rot_deg", degrees(errors.drift->rot)},
+                             {"segments", errors.drift->segments}};
+  return json;
+}
+
+Json residual_json(const ResidualFigures& residual) {
+  return {{"trans_m", residual.translation},
+          {"rot_deg", degrees(residual.rotation)},
+          {"deviations", residual.deviations}};
+}
+
+Json loop_json(const LoopFigures& loop) {
+  Json json = {{"from", loop.from}, {"to", loop.to}, {"accepted", loop.accepted}};
+  if (!loop.reason.empty()) json["reason"] = loop.reason;
+  json["before"] = residual_json(loop.before);
+  json["after"] = residual_json(loop.after);
+  if (loop.held_out) json["held_out"] = residual_json(*loop.held_out);
+  return json;
+}
+
+void add_map(const MapFigures& map, Json& json) {
+  json["mme"] = map.entropy;
+  json["plane_thickness_m"] = map.plane_thickness;
+  if (map.walls_before) {
+    json["double_wall_gap_before_m"] = map.walls_before->median;
+    json["double_wall_gap_before_90_m"] = map.walls_before->percentile_90;
+  }
+  if (map.walls) {
+    json["double_wall_gap_m"] = map.walls->median;
+    json["double_wall_gap_90_m"] = map.walls->percentile_90;
+  }
+  json["loops"] = Json::array();
+  for (const LoopFigures& loop : map.loops) json["loops"].push_back(loop_json(loop));
 }
 
 Json evaluation_json(const RunReport& report) {
-  Json json = trajectory_json(*report.evaluation);
+  Json json = Json::object();
+  if (report.evaluation) json = trajectory_json(*report.evaluation);
   if (report.odometry_evaluation) json["odometry"] = trajectory_json(*report.odometry_evaluation);
+  if (report.map_evaluation) add_map(*report.map_evaluation, json);
   return json;
 }
 
@@ -89,7 +126,7 @@ void write_report_json(const std::filesystem::path& path, const RunReport& repor
   json["stages"] = stages_json(report.stages);
   if (report.scans) json["scans"] = scans_json(*report.scans);
   if (report.registration) json["registration"] = registration_json(*report.registration);
-  if (report.evaluation) json["evaluation"] = evaluation_json(report);
+  if (report.evaluation || report.map_evaluation) json["evaluation"] = evaluation_json(report);
   if (report.levelled) json["world"] = {{"levelled_deg", degrees(*report.levelled)}};
   if (report.mesh)
     json["mesh"] = {{"vertices", report.mesh->vertices}, {"triangles", report.mesh->triangles}};

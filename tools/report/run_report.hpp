@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -34,11 +35,47 @@ struct RegistrationFigures {
   std::vector<std::vector<std::string>> components;  ///< ids of scans that hang together
 };
 
+/// Relative error per metre of the true path, means over segments of all lengths.
+struct DriftFigures {
+  double trans = 0;  ///< m/m
+  double rot = 0;    ///< rad/m
+  std::size_t segments = 0;
+};
+
 /// Errors of a trajectory against the truth, after alignment.
 struct TrajectoryFigures {
   double ate_rmse = 0, ate_max = 0;   ///< m
   double rot_mean = 0, rot_max = 0;   ///< rad
   double rpe_trans = 0, rpe_rot = 0;  ///< m and rad, rmse from scan to scan
+  std::optional<DriftFigures> drift;  ///< where the path is long enough
+};
+
+/// How far a loop edge is off the poses.
+struct ResidualFigures {
+  double translation = 0;  ///< m
+  double rotation = 0;     ///< rad
+  double deviations = 0;   ///< standard deviations
+};
+
+struct LoopFigures {
+  std::uint32_t from = 0, to = 0;  ///< numbers of the scans
+  bool accepted = false;
+  std::string reason;             ///< why not
+  ResidualFigures before, after;  ///< matched in order, relaxed
+  std::optional<ResidualFigures> held_out;
+};
+
+/// How far apart the same walls are before and after a loop.
+struct GapFigures {
+  double median = 0, percentile_90 = 0;  ///< m
+};
+
+/// How good the map is, without a truth. NaN where there are too few points.
+struct MapFigures {
+  double entropy = 0;                             ///< nats
+  double plane_thickness = 0;                     ///< m
+  std::optional<GapFigures> walls_before, walls;  ///< where loops are seen from both sides
+  std::vector<LoopFigures> loops;
 };
 
 struct MeshFigures {
@@ -61,7 +98,8 @@ struct RunReport {
   std::optional<RegistrationFigures> registration;
   std::optional<TrajectoryFigures> evaluation;           ///< of the result
   std::optional<TrajectoryFigures> odometry_evaluation;  ///< of the poses at the start
-  std::optional<double> levelled;                        ///< rad, how far the world was turned
+  std::optional<MapFigures> map_evaluation;
+  std::optional<double> levelled;  ///< rad, how far the world was turned
   std::optional<MeshFigures> mesh;
   std::optional<PolygonFigures> polygons;
   const PolygonMap* map = nullptr;  ///< with labels: the areas by label

@@ -19,13 +19,19 @@ Trajectory odometry_trajectory(const Imported& imported, const World& world) {
   return trajectory;
 }
 
-TrajectoryFigures trajectory_figures(const TrajectoryError& error) {
-  return {.ate_rmse = error.ape_translation.rmse,
-          .ate_max = error.ape_translation.max,
-          .rot_mean = radians(error.ape_rotation.mean),
-          .rot_max = radians(error.ape_rotation.max),
-          .rpe_trans = error.rpe_translation.rmse,
-          .rpe_rot = radians(error.rpe_rotation.rmse)};
+TrajectoryFigures trajectory_figures(const TrajectoryError& error, const SegmentError& segments) {
+  TrajectoryFigures figures{.ate_rmse = error.ape_translation.rmse,
+                            .ate_max = error.ape_translation.max,
+                            .rot_mean = radians(error.ape_rotation.mean),
+                            .rot_max = radians(error.ape_rotation.max),
+                            .rpe_trans = error.rpe_translation.rmse,
+                            .rpe_rot = radians(error.rpe_rotation.rmse),
+                            .drift = {}};
+  if (segments.translation.count > 0)
+    figures.drift = {.trans = segments.translation.mean,
+                     .rot = radians(segments.rotation.mean),
+                     .segments = segments.translation.count};
+  return figures;
 }
 
 }  // namespace planum

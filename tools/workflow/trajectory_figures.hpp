@@ -1,6 +1,7 @@
 #pragma once
 
 #include "slam/core/trajectory.hpp"
+#include "slam/evaluation/segment_error.hpp"
 #include "slam/evaluation/trajectory_error.hpp"
 #include "tools/report/run_report.hpp"
 #include "tools/workflow/results.hpp"
@@ -14,6 +15,6 @@ Trajectory mapped_trajectory(const Imported& imported, const World& world);
 Trajectory odometry_trajectory(const Imported& imported, const World& world);
 
 /// The errors that a report names.
-TrajectoryFigures trajectory_figures(const TrajectoryError& error);
+TrajectoryFigures trajectory_figures(const TrajectoryError& error, const SegmentError& segments);
 
 }  // namespace planum

@@ -39,8 +39,28 @@ RunReport full_report(const testing::SmallMap& small) {
                        .rot_mean = radians(0.25),
                        .rot_max = radians(0.5),
                        .rpe_trans = 0.003,
-                       .rpe_rot = radians(0.125)};
-  report.odometry_evaluation = {.ate_rmse = 1.5};
+                       .rpe_rot = radians(0.125),
+                       .drift = DriftFigures{.trans = 0.01, .rot = radians(0.5), .segments = 6}};
+  report.odometry_evaluation.emplace().ate_rmse = 1.5;
+  report.map_evaluation.emplace();
+  report.map_evaluation->entropy = -4.5;
+  report.map_evaluation->plane_thickness = 0.008;
+  report.map_evaluation->walls_before = {.median = 0.03, .percentile_90 = 0.06};
+  report.map_evaluation->walls = {.median = 0.001, .percentile_90 = 0.002};
+  report.map_evaluation->loops = {{.from = 0,
+                                   .to = 5,
+                                   .accepted = true,
+                                   .reason = "",
+                                   .before = {0.1, radians(2), 5},
+                                   .after = {0.01, radians(0.25), 0.5},
+                                   .held_out = ResidualFigures{0.02, radians(0.5), 1}},
+                                  {.from = 1,
+                                   .to = 7,
+                                   .accepted = false,
+                                   .reason = "too few pairs",
+                                   .before = {},
+                                   .after = {},
+                                   .held_out = {}}};
   report.levelled = radians(2);
   report.mesh = {.vertices = 50, .triangles = 96};
   report.polygons = {
@@ -76,6 +96,25 @@ TEST(RunReport, HasTheKeysThatStay) {
       {"/evaluation/ate_max_m", 0.02},
       {"/evaluation/rot_mean_deg", 0.25},
       {"/evaluation/rpe_trans_m", 0.003},
+      {"/evaluation/rpe_per_metre/trans_m", 0.01},
+      {"/evaluation/rpe_per_metre/rot_deg", 0.5},
+      {"/evaluation/rpe_per_metre/segments", 6},
+      {"/evaluation/mme", -4.5},
+      {"/evaluation/plane_thickness_m", 0.008},
+      {"/evaluation/double_wall_gap_before_m", 0.03},
+      {"/evaluation/double_wall_gap_before_90_m", 0.06},
+      {"/evaluation/double_wall_gap_m", 0.001},
+      {"/evaluation/double_wall_gap_90_m", 0.002},
+      {"/evaluation/loops/0/from", 0},
+      {"/evaluation/loops/0/to", 5},
+      {"/evaluation/loops/0/accepted", true},
+      {"/evaluation/loops/0/before/trans_m", 0.1},
+      {"/evaluation/loops/0/before/rot_deg", 2.0},
+      {"/evaluation/loops/0/before/deviations", 5.0},
+      {"/evaluation/loops/0/after/trans_m", 0.01},
+      {"/evaluation/loops/0/held_out/rot_deg", 0.5},
+      {"/evaluation/loops/1/accepted", false},
+      {"/evaluation/loops/1/reason", "too few pairs"},
       {"/mesh/vertices", 50},
       {"/mesh/triangles", 96},
       {"/polygons/count", 10},
@@ -119,6 +158,17 @@ TEST(RunReport, HasWhatElseAReaderAsksFor) {
   EXPECT_NEAR(json["evaluation"]["rpe_rot_deg"].get<double>(), 0.125, 1e-12);
   EXPECT_EQ(json["evaluation"]["odometry"]["ate_rmse_m"], 1.5);
   EXPECT_NEAR(json["world"]["levelled_deg"].get<double>(), 2, 1e-12);
+}
+
+TEST(RunReport, EvaluatesTheMapWithoutATruthToo) {
+  RunReport report;
+  report.map_evaluation.emplace().entropy = -3;
+  const Json evaluation = written(report)["evaluation"];
+  EXPECT_EQ(evaluation["mme"], -3.0);
+  EXPECT_TRUE(evaluation["loops"].empty());
+  EXPECT_FALSE(evaluation.contains("ate_rmse_m"));
+  EXPECT_FALSE(evaluation.contains("double_wall_gap_m"));
+  EXPECT_FALSE(written(full_report({}))["evaluation"]["loops"][1].contains("held_out"));
 }
 
 TEST(RunReport, KeepsStagesInTheirOrder) {

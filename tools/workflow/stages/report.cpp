@@ -7,6 +7,7 @@
 #include "tools/report/run_report.hpp"
 #include "tools/report/top_view.hpp"
 #include "tools/workflow/figures.hpp"
+#include "tools/workflow/map_evaluation.hpp"
 #include "tools/workflow/stages/stages.hpp"
 #include "tools/workflow/trajectory_figures.hpp"
 
@@ -30,18 +31,28 @@ std::vector<StageCost> costs(const StageContext& context) {
   return costs;
 }
 
-void evaluate(StageContext& context, RunReport& report) {
+TrajectoryFigures compared(const Trajectory& trajectory, const Trajectory& truth) {
+  return trajectory_figures(trajectory_error(trajectory, truth), segment_error(trajectory, truth));
+}
+
+void evaluate_trajectory(StageContext& context, RunReport& report) {
   if (context.project.settings.truth.empty()) return;
   const Trajectory truth = read_tum(resolved(context.project, context.project.settings.truth));
   const Imported& imported = context.results.imported.get();
   const World& world = context.results.world.get();
-  report.evaluation =
-      trajectory_figures(trajectory_error(mapped_trajectory(imported, world), truth));
-  report.odometry_evaluation =
-      trajectory_figures(trajectory_error(odometry_trajectory(imported, world), truth));
+  report.evaluation = compared(mapped_trajectory(imported, world), truth);
+  report.odometry_evaluation = compared(odometry_trajectory(imported, world), truth);
   context.record.summary +=
       fmt::format(", trajectory error {:.3f} m rmse (odometry {:.3f} m)",
                   report.evaluation->ate_rmse, report.odometry_evaluation->ate_rmse);
+}
+
+void evaluate(StageContext& context, RunReport& report) {
+  Results& results = context.results;
+  evaluate_trajectory(context, report);
+  report.map_evaluation =
+      map_figures(evaluate_map(results.world.get(), results.cloud.get(), results.registered.get(),
+                               results.relaxed.get().graph, quick_map_evaluation()));
 }
 
 void draw(StageContext& context) {
@@ -88,7 +99,7 @@ void work(StageContext& context) {
 
 Stage report_stage() {
   return {.name = "report",
-          .version = 1,
+          .version = 2,
           .unit = "steps",
           .needs = {"import", "register", "relax", "cloud", "mesh", "polygons", "labels"},
           .parameters = {"evaluation"},
