@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/graph/elch.hpp"
 
 namespace planum {
 namespace {
@@ -87,6 +88,9 @@ EdgeRelaxation relax_edges(const PoseGraph& graph) {
   const Pose world_from_first = graph.poses.front();
   for (Pose& pose : result.poses) pose = world_from_first.inverse() * pose;
   result.error_before = summed_error(edges, result.poses);
+  if (std::vector<Pose> bent = elch({result.poses, edges});
+      summed_error(edges, bent) < result.error_before)
+    result.poses = std::move(bent);
   std::vector<bool> fixed(result.poses.size());
   const std::vector<std::size_t> first = first_connected(fixed.size(), links);
   for (std::size_t i = 0; i < fixed.size(); ++i) fixed[i] = first[i] == i;

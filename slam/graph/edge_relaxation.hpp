@@ -24,8 +24,9 @@ struct EdgeRelaxation {
 };
 
 /// Poses that agree best with the accepted edges of a graph, by the Lu/Milios system again and
-/// again. The first pose of whatever hangs together stays fixed. It closes loops before scans are
-/// matched all at once. Throws Error if an edge joins poses that are not there, or is not finite.
+/// again, from where elch() brings them if that is better. The first pose of whatever hangs
+/// together stays fixed. It closes loops before scans are matched all at once. Throws Error if an
+/// edge joins poses that are not there, or is not finite.
 EdgeRelaxation relax_edges(const PoseGraph& graph);
 
 }  // namespace planum

@@ -67,27 +67,39 @@ Tree shortest_ways(const std::vector<std::vector<Way>>& ways, std::size_t start)
   return tree;
 }
 
-/// For each pose its share of the error between the start of the tree and `end`.
-std::vector<double> shares(const Tree& tree, std::size_t end) {
-  std::vector<double> result(tree.distance.size(), 0);
-  std::vector<bool> on_way(result.size(), false);
-  for (std::size_t at = end; at != none; at = tree.parent[at]) {
+/// The poses bent so that `end` comes to `goal`. Along the way each step is turned by the share of
+/// the turn up to it, and what then is left of the shift is shared too; all else keeps its place
+/// relative to the pose of the way where it branches off.
+std::vector<Pose> bent(const std::vector<Pose>& poses, const Tree& tree, std::size_t end,
+                       const Pose& goal) {
+  std::vector<std::size_t> way;
+  for (std::size_t at = end; at != none; at = tree.parent[at]) way.push_back(at);
+  std::reverse(way.begin(), way.end());
+  const auto share = [&](std::size_t at) {
+    return tree.distance[end] > 0 ? tree.distance[at] / tree.distance[end] : 1;
+  };
+  const Eigen::AngleAxisd turn(goal.linear() * poses[end].linear().transpose());
+  const auto turned = [&](std::size_t at) {
+    return Eigen::AngleAxisd(share(at) * turn.angle(), turn.axis()).toRotationMatrix();
+  };
+  std::vector<Pose> result = poses;
+  std::vector<bool> on_way(poses.size(), false);
+  on_way[way.front()] = true;
+  for (std::size_t k = 1; k < way.size(); ++k) {
+    const std::size_t before = way[k - 1], at = way[k];
     on_way[at] = true;
-    result[at] = tree.distance[end] > 0 ? tree.distance[at] / tree.distance[end] : 1;
+    result[at].linear() = turned(at) * poses[at].linear();
+    result[at].translation() =
+        result[before].translation() +
+        turned(before) * (poses[at].translation() - poses[before].translation());
   }
+  const Eigen::Vector3d left = goal.translation() - result[end].translation();
+  for (const std::size_t at : way) result[at].translation() += share(at) * left;
   for (const std::size_t at : tree.by_distance)
-    if (!on_way[at] && tree.parent[at] != none) result[at] = result[tree.parent[at]];
+    if (!on_way[at])
+      result[at] = result[tree.parent[at]] * poses[tree.parent[at]].inverse() * poses[at];
+  for (const std::size_t at : tree.by_distance) result[at] = orthonormalized(result[at]);
   return result;
-}
-
-/// Turns about where the pose is, by a share of the turn, and shifts by that of the shift.
-Pose bent(const Pose& pose, const Eigen::AngleAxisd& turn, const Eigen::Vector3d& shift,
-          double share) {
-  Pose result = pose;
-  result.linear() =
-      Eigen::AngleAxisd(share * turn.angle(), turn.axis()).toRotationMatrix() * pose.linear();
-  result.translation() += share * shift;
-  return orthonormalized(result);
 }
 
 }  // namespace
@@ -114,11 +126,7 @@ std::vector<Pose> elch(const PoseGraph& graph, double closed) {
     const Tree tree = open ? shortest_ways(ways, loop.from) : Tree{};
     if (open && std::isfinite(tree.distance[loop.to])) {
       const Pose goal = poses[loop.from] * loop.from_from_to;
-      const Eigen::AngleAxisd turn(goal.linear() * poses[loop.to].linear().transpose());
-      const Eigen::Vector3d shift = goal.translation() - poses[loop.to].translation();
-      const std::vector<double> share = shares(tree, loop.to);
-      for (std::size_t i = 0; i < poses.size(); ++i)
-        poses[i] = bent(poses[i], turn, shift, share[i]);
+      poses = bent(poses, tree, loop.to, goal);
     }
     join(loop);
   }

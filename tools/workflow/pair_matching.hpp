@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "slam/graph/loops.hpp"
@@ -24,14 +26,24 @@ class PairMatching {
   /// `first_gate` (m) in place of that of the settings.
   Alignment align(std::size_t target, std::size_t source, const Pose& guess, double first_gate);
 
+  /// The scan after the earlier ones with all of those that overlap it; see MetascanMatcher.
+  Alignment align_to_metascan(std::span<const Pose> earlier, const Pose& guess, double first_gate);
+
   /// For functions that match; it must outlive their calls.
   PairMatcher matcher();
-  GatedPairMatcher loop_matcher();
+  GatedPairMatcher gated_matcher();
+  MetascanMatcher metascan_matcher();
 
  private:
+  Alignment remembered(const std::string& name, const Digest& key,
+                       const std::function<Alignment()>& match);
+
   Results& results_;
   UnitCache& units_;
   IcpParams icp_;
+  /// Scans ready to be matched, made when first asked for.
+  const std::vector<MatchingScan>& scans();
+
   Progress progress_;  ///< of making scans ready
   Digest parameters_;  ///< of all that a match depends on but the scans and the guess
   std::once_flag ready_;

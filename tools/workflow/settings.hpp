@@ -46,6 +46,7 @@ struct Settings {
   SensorSettings sensor;
 
   std::string registration_method = "icp";
+  std::string match_against = "previous";
   std::string pairing = "point-to-plane";
   std::string minimizer = "svd";
   MatchingScanParams matching;

@@ -116,8 +116,9 @@ TEST(HeldOutLoops, MovingTheWorldChangesNothing) {
   for (Pose& pose : graph.poses) pose = pose_from_xyz_ypr({9, -8, 7}, 1, 0.5, -0.5) * pose;
   const HeldOutLoops there = held_out_loops(graph);
   for (std::size_t k = 0; k < graph.edges.size(); ++k)
-    if (here.residuals[k])
+    if (here.residuals[k]) {
       EXPECT_NEAR(here.residuals[k]->translation, there.residuals[k]->translation, 1e-5);
+    }
 }
 
 TEST(HeldOutLoops, OfAGarageAreForetoldByTheOthers) {

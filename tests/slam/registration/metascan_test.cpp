@@ -60,9 +60,10 @@ TEST(Metascan, TakesTheScansThatOverlapMost) {
   const Walk walk = turned_walk();
   const auto earlier = std::span(walk.truth).first(3);
   const Pose guess = walk.truth[2].inverse() * walk.truth[3];
-  // The last stop looks where the first two looked, not where the one before it did.
-  EXPECT_EQ(metascan_members(walk.scans, earlier, guess, {.scans = 2}),
-            (std::vector<std::size_t>{0, 1}));
+  // The last stop looks where the second one looked, not where the one before it did.
+  EXPECT_EQ(metascan_members(walk.scans, earlier, guess, {.scans = 1}),
+            (std::vector<std::size_t>{1}));
+  EXPECT_EQ(metascan_members(walk.scans, earlier, guess), (std::vector<std::size_t>{0, 1, 2}));
   EXPECT_TRUE(metascan_members(walk.scans, {}, guess).empty());
   EXPECT_TRUE(metascan_members(walk.scans, earlier, Pose(Eigen::Translation3d(40, 0, 0))).empty());
 }

@@ -1,6 +1,9 @@
+#include <optional>
+
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/registration/see_through.hpp"
 #include "slam/registration/sequence.hpp"
 #include "tools/workflow/figures.hpp"
 #include "tools/workflow/pair_matching.hpp"
@@ -30,11 +33,46 @@ SequenceMatch trusted(const std::vector<Pose>& poses, const OdometryNoise& noise
   return match;
 }
 
+/// What can be done for steps whose match cannot be trusted.
+class StepAids {
+ public:
+  StepAids(PairMatching& matching, StageContext& context)
+      : matching_(matching),
+        context_(context),
+        views_(context.results.imported.get().scans.size()) {}
+
+  SequenceAids aids() {
+    return {.second = matching_.gated_matcher(),
+            .metascan = matching_.metascan_matcher(),
+            .locate = {},
+            .contradicted = [this](std::size_t target, std::size_t source, const Pose& pose) {
+              return check_free_space(view(source), view(target), pose).contradicted();
+            }};
+  }
+
+ private:
+  const RangeView& view(std::size_t scan) {
+    if (!views_[scan])
+      views_[scan] = range_view(context_.results.matching_scans(context_.progress)[scan]);
+    return *views_[scan];
+  }
+
+  PairMatching& matching_;
+  StageContext& context_;
+  std::vector<std::optional<RangeView>> views_;
+};
+
 SequenceMatch matched(const Imported& imported, StageContext& context) {
   const Settings& settings = context.project.settings;
   PairMatching matching(context.results, settings, context.units, context.progress);
-  return match_in_order(given_poses(imported), matching.matcher(), settings.sequence,
-                        context.progress);
+  StepAids aids(matching, context);
+  SequenceParams params = settings.sequence;
+  params.odometry_known = imported.pose_source != "none";
+  const std::vector<Pose> poses = given_poses(imported);
+  if (settings.match_against == "metascan")
+    return match_to_metascan(poses, matching.metascan_matcher(), params, context.progress,
+                             aids.aids());
+  return match_in_order(poses, matching.matcher(), params, context.progress, aids.aids());
 }
 
 void report(const SequenceMatch& match, const Imported& imported, Manifest& record) {
@@ -82,7 +120,7 @@ void work(StageContext& context) {
 
 Stage register_stage() {
   return {.name = "register",
-          .version = 2,
+          .version = 3,
           .unit = "pairs",
           .needs = {"import"},
           .parameters = {"registration"},

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "slam/graph/graph_optimization.hpp"
 #include "slam/graph/loops.hpp"
 #include "slam/graph/pose_graph.hpp"
 #include "slam/graph/relax_lu_milios.hpp"
@@ -24,9 +25,25 @@ void add_loops(PoseGraph& graph, StageContext& context) {
   const Settings& settings = context.project.settings;
   PairMatching matching(context.results, settings, context.units, context.progress);
   const std::vector<Edge> loops =
-      find_loops(context.results.matching_scans(context.progress), graph, matching.loop_matcher(),
+      find_loops(context.results.matching_scans(context.progress), graph, matching.gated_matcher(),
                  settings.loops, context.progress);
   graph.edges.insert(graph.edges.end(), loops.begin(), loops.end());
+}
+
+/// The pose graph alone: loops that contradict the rest are left out.
+Relaxed optimized(PoseGraph graph, StageContext& context) {
+  const OptimizedGraph result = optimize(graph, {.covariances = false}, context.progress);
+  graph.poses = result.poses;
+  for (std::size_t k = 0; k < graph.edges.size(); ++k) {
+    Edge& edge = graph.edges[k];
+    if (!edge.accepted || result.quality.counts[k]) continue;
+    edge.accepted = false;
+    edge.reason = "the pose graph contradicts it";
+  }
+  return {.graph = std::move(graph),
+          .iterations = result.quality.iterations,
+          .converged = result.quality.converged,
+          .components = {}};
 }
 
 Relaxed relaxed(const PoseGraph& graph, StageContext& context) {
@@ -58,9 +75,11 @@ std::string summary(const Relaxed& relaxed) {
   for (const Edge& edge : relaxed.graph.edges) {
     if (edge.kind == EdgeKind::loop) ++(edge.accepted ? accepted : rejected);
   }
-  return fmt::format("{} loops closed, {} rejected; rms {:.1f} -> {:.1f} mm{}", accepted, rejected,
-                     1000 * relaxed.residual_before, 1000 * relaxed.residual_after,
-                     relaxed.converged ? "" : ", not converged");
+  const std::string loops = fmt::format("{} loops closed, {} rejected", accepted, rejected);
+  const std::string end = relaxed.converged ? "" : ", not converged";
+  if (relaxed.residual_after == 0) return loops + end;  // no links were measured
+  return fmt::format("{}; rms {:.1f} -> {:.1f} mm{}", loops, 1000 * relaxed.residual_before,
+                     1000 * relaxed.residual_after, end);
 }
 
 void work(StageContext& context) {
@@ -72,7 +91,9 @@ void work(StageContext& context) {
     context.record.summary = "the poses stay as they are";
   } else {
     if (settings.close_loops) add_loops(result.graph, context);
-    result = relaxed(result.graph, context);
+    const std::string& method = settings.relaxation_method;
+    if (method != "lu-milios") result = optimized(std::move(result.graph), context);
+    if (method != "pose-graph") result = relaxed(result.graph, context);
     context.record.summary = summary(result);
     if (!result.converged) {
       context.record.warnings.push_back(
