@@ -5,6 +5,7 @@
 #include <optional>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include "slam/core/parallel.hpp"
 #include "slam/registration/icp.hpp"
@@ -87,9 +88,9 @@ class PatchCover {
       cells_[cell_key(cell_of(p.point, static_cast<float>(params.radius)))].push_back(p);
   }
 
-  std::vector<PlanePatch> patches() {
+  std::vector<PlanePatch> patches(std::span<const std::uint32_t> seeds) {
     std::vector<PlanePatch> result;
-    for (const std::uint32_t seed : seeds()) {
+    for (const std::uint32_t seed : seeds) {
       if (!is_free_[seed] || !may_be_seed_[seed]) continue;
       std::optional<PlanePatch> patch = grown(seed);
       if (!patch) continue;
@@ -102,20 +103,6 @@ class PatchCover {
   }
 
  private:
-  /// The surest first; what comes after decides between equal ones for any order of the scans.
-  std::vector<std::uint32_t> seeds() const {
-    std::vector<std::uint32_t> order;
-    for (std::uint32_t i = 0; i < surfels_.size(); ++i)
-      if (!surfels_[i].held_out) order.push_back(i);
-    const auto rank = [&](std::uint32_t i) {
-      const Surfel& s = surfels_[i];
-      return std::tuple(s.tilt_variance, s.point.x(), s.point.y(), s.point.z());
-    };
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
-    return order;
-  }
-
   std::size_t part(std::uint32_t surfel) const {
     return part_of_scan_.empty() ? 0 : part_of_scan_[surfels_[surfel].scan];
   }
@@ -210,11 +197,29 @@ std::vector<Surfel> surfels(std::span<const MatchingScan> scans, double spacing)
   return result;
 }
 
+std::vector<std::uint32_t> surest_first(std::span<const Surfel> surfels) {
+  std::vector<std::pair<float, std::uint32_t>> order;
+  for (std::uint32_t i = 0; i < surfels.size(); ++i)
+    if (!surfels[i].held_out) order.emplace_back(surfels[i].tilt_variance, i);
+  // What decides between equal ones is not the order of the scans either.
+  const auto rank = [&](const std::pair<float, std::uint32_t>& s) {
+    const Eigen::Vector3f& p = surfels[s.second].point;
+    return std::tuple(s.first, p.x(), p.y(), p.z(), s.second);
+  };
+  std::sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first < b.first : rank(a) < rank(b);
+  });
+  std::vector<std::uint32_t> result;
+  for (const auto& [variance, i] : order) result.push_back(i);
+  return result;
+}
+
 std::vector<PlanePatch> plane_patches(std::span<const Surfel> surfels,
+                                      std::span<const std::uint32_t> seeds,
                                       std::span<const Pose> world_from_scan,
                                       std::span<const std::size_t> part_of_scan,
                                       const PatchParams& params) {
-  return PatchCover(surfels, world_from_scan, part_of_scan, params).patches();
+  return PatchCover(surfels, world_from_scan, part_of_scan, params).patches(seeds);
 }
 
 }  // namespace planum

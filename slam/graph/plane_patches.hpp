@@ -26,6 +26,10 @@ struct Surfel {
 /// of neighbours, one of four, are held out. The choice depends on nothing but the scan.
 std::vector<Surfel> surfels(std::span<const MatchingScan> scans, double spacing);
 
+/// The surfels that are not held out, in the order in which patches begin at them: the least tilted
+/// first. It does not depend on the order of the scans.
+std::vector<std::uint32_t> surest_first(std::span<const Surfel> surfels);
+
 /// A piece of a plane, of limited size because no wall is flat over its whole length, and what all
 /// scans see of it. All its surfels face the same way: a thin wall has patches on either side.
 struct PlanePatch {
@@ -41,11 +45,12 @@ struct PatchParams {
   double least_width = 0.12;       ///< m, rms across: narrower patches show no plane
 };
 
-/// Covers the surfaces that the scans see with patches: the surest surfel that is in none yet is
-/// the seed of the next one. Each surfel is in one patch at most. Scans of different parts
+/// Covers the surfaces that the scans see with patches: the first of `seeds` that is in none yet is
+/// where the next one begins. Each surfel is in one patch at most. Scans of different parts
 /// (`part_of_scan`; empty: all are one) share no patch. The same for any frame of the world and any
 /// order of the scans.
 std::vector<PlanePatch> plane_patches(std::span<const Surfel> surfels,
+                                      std::span<const std::uint32_t> seeds,
                                       std::span<const Pose> world_from_scan,
                                       std::span<const std::size_t> part_of_scan,
                                       const PatchParams& params);

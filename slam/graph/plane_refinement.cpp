@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -22,13 +20,10 @@ constexpr std::size_t patches_per_block = 64;
 constexpr double gate_per_noise_of_scans = 3;
 /// An observation of a plane by fewer surfels says nothing.
 constexpr std::size_t least_surfels_of_scan = 4;
-/// Patches so many times as thick as the median are not flat.
-constexpr double most_thickness_ratio = 3;
-
-double env(const char* name, double value) {
-  const char* text = std::getenv(name);
-  return text ? std::atof(text) : value;
-}
+/// Patches stay as they are while no scan moves more than this much of the gate.
+constexpr double same_patches = 0.1;
+/// Weights follow the distances for so long.
+constexpr int iterations_of_limit = 3;
 
 void check(std::span<const Pose> poses, std::span<const MatchingScan> scans,
            std::span<const std::size_t> part_of_scan, const PlaneRefinementParams& params) {
@@ -55,28 +50,33 @@ void check(std::span<const Pose> poses, std::span<const MatchingScan> scans,
       throw Error(fmt::format("plane refinement: pose {} is not finite", i));
 }
 
-/// The surfels of one scan in a patch: [begin, end) of its list.
-struct Range {
-  std::uint32_t scan;
-  std::size_t begin, end;
+/// A patch while poses move: who makes its plane, scan by scan, and who judges it.
+struct WorkingPatch {
+  struct Part {
+    std::uint32_t scan = 0;
+    std::vector<std::uint32_t> surfels;
+  };
+  Plane plane;  ///< in the world, as the poses are now
+  std::vector<Part> makers;
+  std::vector<std::uint32_t> judges;  ///< held-out surfels
 };
 
-std::vector<Range> by_scan(const PlanePatch& patch, std::span<const Surfel> surfels) {
-  std::vector<Range> result;
-  for (std::size_t k = 0; k < patch.surfels.size(); ++k) {
-    const std::uint32_t scan = surfels[patch.surfels[k]].scan;
-    if (result.empty() || result.back().scan != scan) result.push_back({scan, k, k});
-    result.back().end = k + 1;
+WorkingPatch working(const PlanePatch& patch, std::span<const Surfel> surfels) {
+  WorkingPatch result{.plane = patch.plane, .makers = {}, .judges = {}};
+  for (const std::uint32_t i : patch.surfels) {
+    if (surfels[i].held_out) {
+      result.judges.push_back(i);
+      continue;
+    }
+    if (result.makers.empty() || result.makers.back().scan != surfels[i].scan)
+      result.makers.push_back({surfels[i].scan, {}});
+    result.makers.back().surfels.push_back(i);
   }
+  std::erase_if(result.makers, [](const WorkingPatch::Part& part) {
+    return part.surfels.size() < least_surfels_of_scan;
+  });
   return result;
 }
-
-struct Thickness {
-  double squared = 0;  ///< m^2, sum
-  std::size_t count = 0;
-
-  double rms() const { return count > 0 ? std::sqrt(squared / static_cast<double>(count)) : 0; }
-};
 
 /// The refinement while it runs. Poses are in the frame of the first scan, so that it does not
 /// matter where the world has its origin.
@@ -84,176 +84,175 @@ class Refinement {
  public:
   Refinement(std::vector<Pose> poses, std::span<const MatchingScan> scans,
              std::span<const std::size_t> part_of_scan, const PlaneRefinementParams& params)
-      : scans_(scans),
-        part_of_scan_(part_of_scan),
+      : part_of_scan_(part_of_scan),
         params_(params),
         prior_(poses),
         poses_(std::move(poses)),
-        surfels_(surfels(scans, params.spacing)) {
+        surfels_(surfels(scans, params.spacing)),
+        seeds_(surest_first(surfels_)) {
     std::vector<double> noises;
     for (const MatchingScan& scan : scans) {
-      noise_of_scan_.push_back(std::max(scan.noise, least_noise));
+      noises.push_back(std::max(scan.noise, least_noise));
       radius_.push_back(std::max(scan.radius, params.spacing));
-      if (scan.noise > 0) noises.push_back(noise_of_scan_.back());
     }
-    noise_ = noises.empty() ? least_noise : upper_median(noises);
-    gate_ = params.gate > 0 ? params.gate : gate_per_noise_of_scans * noise_;
-    for (const double noise : noise_of_scan_)
+    const std::vector<double> noise_of_scan = noises;
+    noise_ = upper_median(noises);
+    for (const double noise : noise_of_scan)
       weight_of_scan_.push_back(noise_ * noise_ / (noise * noise));
+    gate_ = params.gate > 0 ? params.gate : gate_per_noise_of_scans * noise_;
   }
 
   void run(const Progress& progress, PlaneRefinement& result) {
     find_patches();
-    const std::vector<PlanePatch> first_patches = patches_;
-    const double most = limit(observed_once(first_patches, prior_), prior_);
-    result.thickness_before = thickness(first_patches, prior_, most).rms();
+    const std::vector<WorkingPatch> first_patches = patches_;
     for (int round = 0; round < params_.max_rounds && !result.converged; ++round) {
       if (round > 0) find_patches();
-      if (patches_.empty()) break;
-      result.converged = iterate(progress, result) <= 1;
+      const std::vector<Pose> found_at = poses_;
+      const bool rests = iterate(progress, result);
+      result.converged = rests && farthest(found_at) < same_patches * gate_;
     }
-    result.thickness_after = thickness(first_patches, poses_, most).rms();
+    // On the patches of the poses that came, which favours these.
+    const double most = limit(fitted_anew(first_patches, prior_), prior_);
+    result.thickness_before = thickness(first_patches, prior_, most);
+    result.thickness_after = thickness(first_patches, poses_, most);
   }
 
   const std::vector<Pose>& poses() const { return poses_; }
 
-  /// m, how far the points of a scan went, rms.
-  double moved(std::size_t scan) const {
-    const Pose motion = prior_[scan].inverse() * poses_[scan];
+  /// m, how far the points of a scan went from where another pose has them, rms.
+  double moved(std::size_t scan, const Pose& from) const {
+    const Pose motion = from.inverse() * poses_[scan];
     return std::hypot(motion.translation().norm(), rotation_angle(motion) * radius_[scan]);
   }
 
+  /// The same from where it came.
+  double moved(std::size_t scan) const { return moved(scan, prior_[scan]); }
+
  private:
+  double farthest(const std::vector<Pose>& from) const {
+    double result = 0;
+    for (std::size_t i = 0; i < poses_.size(); ++i) result = std::max(result, moved(i, from[i]));
+    return result;
+  }
+
   void find_patches() {
-    patches_ = plane_patches(
-        surfels_, poses_, part_of_scan_,
-        {.radius = params_.patch_radius, .gate = gate_, .max_angle = params_.max_angle});
-    std::erase_if(patches_,
-                  [&](const PlanePatch& patch) { return by_scan(patch, surfels_).size() < 2; });
+    patches_.clear();
+    for (const PlanePatch& patch : plane_patches(
+             surfels_, seeds_, poses_, part_of_scan_,
+             {.radius = params_.patch_radius, .gate = gate_, .max_angle = params_.max_angle})) {
+      WorkingPatch one = working(patch, surfels_);
+      if (one.makers.size() >= 2) patches_.push_back(std::move(one));
+    }
   }
 
-  Eigen::Vector3d in_world(std::uint32_t surfel, std::span<const Pose> poses) const {
-    return poses[surfels_[surfel].scan] * surfels_[surfel].point.cast<double>();
+  double distance(const WorkingPatch& patch, std::uint32_t surfel,
+                  std::span<const Pose> poses) const {
+    return patch.plane.signed_distance(poses[surfels_[surfel].scan] *
+                                       surfels_[surfel].point.cast<double>());
   }
 
-  /// The limit of the biweight from the distances of all surfels from the planes of their patches.
-  double limit(std::span<const PlanePatch> patches, std::span<const Pose> poses) const {
+  /// The limit of the biweight from the distances of all surfels from the planes that they make.
+  double limit(std::span<const WorkingPatch> patches, std::span<const Pose> poses) const {
     std::vector<double> distances;
-    for (const PlanePatch& patch : patches)
-      for (const std::uint32_t i : patch.surfels)
-        if (!surfels_[i].held_out)
-          distances.push_back(std::abs(patch.plane.signed_distance(in_world(i, poses))));
-    if (distances.empty()) return gate_;
-    return std::clamp(biweight_limit(distances), least_noise, gate_);
+    for (const WorkingPatch& patch : patches)
+      for (const WorkingPatch::Part& part : patch.makers)
+        for (const std::uint32_t i : part.surfels)
+          distances.push_back(std::abs(distance(patch, i, poses)));
+    return distances.empty() ? gate_ : std::clamp(biweight_limit(distances), least_noise, gate_);
   }
 
-  /// The sums over the surfels of a patch, held-out ones left out, weighted by how well they suit
-  /// its plane. Empty if fewer than two scans see it.
-  SharedPlane observed(const PlanePatch& patch, std::span<const Pose> poses, double limit) const {
-    const double n0 = env("N0", 0);
+  /// The sums over what scans see of a patch, weighted by how well it suits the plane.
+  SharedPlane observed(const WorkingPatch& patch, std::span<const Pose> poses, double limit) const {
     SharedPlane result;
-    for (const Range& range : by_scan(patch, surfels_)) {
-      PlaneObservation observation{.scan = range.scan, .moments = {}};
+    for (const WorkingPatch::Part& part : patch.makers) {
+      PlaneObservation observation{.scan = part.scan,
+                                   .origin = surfels_[part.surfels.front()].point.cast<double>(),
+                                   .moments = {}};
       std::size_t count = 0;
-      for (std::size_t k = range.begin; k < range.end; ++k) {
-        const std::uint32_t i = patch.surfels[k];
-        if (surfels_[i].held_out) continue;
-        const double weight = weight_of_scan_[range.scan] *
-                              biweight(patch.plane.signed_distance(in_world(i, poses)), limit);
+      for (const std::uint32_t i : part.surfels) {
+        const double weight = biweight(distance(patch, i, poses), limit);
         if (weight == 0) continue;
-        const Eigen::Vector3d point = surfels_[i].point.cast<double>();
-        if (count++ == 0) observation.origin = point;
-        observation.moments.add(point - observation.origin, weight);
-      }
-      if (n0 > 0 && count > 0) {
-        const double f = n0 / (n0 + static_cast<double>(count));
-        observation.moments.count *= f;
-        observation.moments.sum *= f;
-        observation.moments.squares *= f;
+        observation.moments.add(surfels_[i].point.cast<double>() - observation.origin,
+                                weight_of_scan_[part.scan] * weight);
+        ++count;
       }
       if (count >= least_surfels_of_scan) result.push_back(observation);
     }
     return result;
   }
 
-  /// Weighted sums of all patches, and their planes fitted anew.
-  std::vector<SharedPlane> observed(std::vector<PlanePatch>& patches,
-                                    std::span<const Pose> poses) const {
-    const double most = limit(patches, poses);
+  /// The sums of all patches, and their planes fitted anew to them.
+  std::vector<SharedPlane> observed(std::vector<WorkingPatch>& patches, std::span<const Pose> poses,
+                                    double limit) const {
     std::vector<SharedPlane> planes(patches.size());
     parallel_for(patches.size(), patches_per_block, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
-        planes[p] = observed(patches[p], poses, most);
+        planes[p] = observed(patches[p], poses, limit);
         if (const std::optional<PlaneFit> fit = fitted(planes[p], poses))
           patches[p].plane = facing(fit->plane, patches[p].plane.normal);
-        else
-          planes[p].clear();
       }
     });
     return planes;
   }
 
-  /// Moves all poses until they rest; how often it took.
-  int iterate(const Progress& progress, PlaneRefinement& result) {
-    for (int i = 1; i <= params_.max_iterations; ++i) {
-      std::vector<SharedPlane> planes = observed(patches_, poses_);
+  std::vector<WorkingPatch> fitted_anew(std::vector<WorkingPatch> patches,
+                                        std::span<const Pose> poses) const {
+    observed(patches, poses, gate_);
+    return patches;
+  }
+
+  /// Moves all poses until they rest; false if they do not.
+  bool iterate(const Progress& progress, PlaneRefinement& result) {
+    const double stiffness = std::pow(std::sin(params_.weak_angle), 2);
+    double most = gate_;
+    for (int i = 0; i < params_.max_iterations; ++i) {
+      // Held after a while: poses rest on fixed weights only.
+      if (i < iterations_of_limit) most = limit(patches_, poses_);
+      std::vector<SharedPlane> planes = observed(patches_, poses_, most);
       std::erase_if(planes, [](const SharedPlane& plane) { return plane.size() < 2; });
       result.planes = planes.size();
       result.observations = 0;
       for (const SharedPlane& plane : planes) result.observations += plane.size();
+      if (planes.empty()) return true;
       PlaneSystem system(planes, poses_.size());
-      system.linearize(planes, poses_, prior_, radius_, std::pow(std::sin(params_.weak_angle), 2));
+      system.linearize(planes, poses_, prior_, radius_, stiffness);
       const std::optional<std::vector<Vector6d>> motions = system.solved();
       progress.report(static_cast<std::size_t>(++result.iterations), 0);
-      if (!motions) return i;
-      if (move(*motions) < params_.tolerance * noise_) return i;
+      if (!motions) return false;
+      const std::vector<Pose> before = poses_;
+      for (std::size_t k = 0; k < poses_.size(); ++k)
+        poses_[k] = orthonormalized(exp_se3((*motions)[k]) * poses_[k]);
+      if (farthest(before) < params_.tolerance * noise_) return true;
     }
-    return params_.max_iterations + 1;
+    return false;
   }
 
-  /// m, how far the points of the scan that moved most went, rms.
-  double move(const std::vector<Vector6d>& motions) {
-    double largest = 0;
-    for (std::size_t i = 0; i < motions.size(); ++i) {
-      const Pose moved = orthonormalized(exp_se3(motions[i]) * poses_[i]);
-      largest = std::max(largest, std::hypot((moved.translation() - poses_[i].translation()).norm(),
-                                             motions[i].tail<3>().norm() * radius_[i]));
-      poses_[i] = moved;
-    }
-    return largest;
-  }
-
-  /// How far held-out surfels are from the planes that the others make of their patches.
-  std::vector<PlanePatch> observed_once(std::vector<PlanePatch> patches, std::span<const Pose> poses) const {
-    observed(patches, poses);
-    return patches;
-  }
-
-  Thickness thickness(std::vector<PlanePatch> patches, std::span<const Pose> poses, double most) const {
-    Thickness result;
-    for (int pass = 0; pass < 2; ++pass) observed(patches, poses);
-    const std::vector<SharedPlane> planes = observed(patches, poses);
+  /// m, mean distance of held-out surfels from the planes that the others make of their patches. No
+  /// surfel counts more than `most`.
+  double thickness(std::vector<WorkingPatch> patches, std::span<const Pose> poses,
+                   double most) const {
+    for (int pass = 0; pass < 2; ++pass) observed(patches, poses, most);
+    const std::vector<SharedPlane> planes = observed(patches, poses, most);
+    double sum = 0;
+    std::size_t count = 0;
     for (std::size_t p = 0; p < patches.size(); ++p) {
       if (planes[p].size() < 2) continue;
-      for (const std::uint32_t i : patches[p].surfels) {
-        if (!surfels_[i].held_out) continue;
-        const double distance = patches[p].plane.signed_distance(in_world(i, poses));
-        result.squared += std::min(distance * distance, most * most);
-        ++result.count;
-      }
+      for (const std::uint32_t i : patches[p].judges)
+        sum += std::min(std::abs(distance(patches[p], i, poses)), most);
+      count += patches[p].judges.size();
     }
-    return result;
+    return count > 0 ? sum / static_cast<double>(count) : 0;
   }
 
-  std::span<const MatchingScan> scans_;
   std::span<const std::size_t> part_of_scan_;
   const PlaneRefinementParams& params_;
   const std::vector<Pose> prior_;
   std::vector<Pose> poses_;
-  std::vector<Surfel> surfels_;
-  std::vector<double> noise_of_scan_, weight_of_scan_, radius_;
-  double noise_ = 0, gate_ = 0;
-  std::vector<PlanePatch> patches_;
+  const std::vector<Surfel> surfels_;
+  const std::vector<std::uint32_t> seeds_;
+  std::vector<double> weight_of_scan_, radius_;
+  double noise_ = 0, gate_ = 0;  ///< m
+  std::vector<WorkingPatch> patches_;
 };
 
 }  // namespace
@@ -280,7 +279,7 @@ PlaneRefinement refine_planes(std::span<const Pose> world_from_scan,
     result.reason = "no planes are shared";
     return result;
   }
-  if (env("GUARD", 1) > 0 && !(result.thickness_after < result.thickness_before)) {
+  if (!(result.thickness_after < result.thickness_before)) {
     result.reason = fmt::format("planes would be {:.3f} mm thick instead of {:.3f} mm",
                                 1000 * result.thickness_after, 1000 * result.thickness_before);
     return result;

@@ -29,7 +29,7 @@ struct PlaneRefinement {
   std::vector<Pose> poses;       ///< world_from_scan; those that came if `improved` is false
   bool improved = false;         ///< planes are thinner than before
   std::string reason{};          ///< why not
-  double thickness_before = 0;   ///< m, rms distance of held-out surfels from the planes of others
+  double thickness_before = 0;   ///< m, mean distance of held-out surfels from the planes of others
   double thickness_after = 0;    ///< m, the same with the poses that were found, taken or not
   std::size_t planes = 0;        ///< that at least two scans share, at last
   std::size_t observations = 0;  ///< of a plane by a scan

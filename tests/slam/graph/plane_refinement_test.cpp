@@ -198,7 +198,8 @@ TEST(PlaneRefinement, KeepsTheSidesOfAThinWallApart) {
     Pose facing_back = pose_from_xyz_ypr({4 + thickness, 0, 0}, pi, 0, 0);
     const std::vector<Pose> poses = {Pose::Identity(), facing_back};
     const std::vector<Surfel> all = surfels(scans, 0.15);
-    const std::vector<PlanePatch> patches = plane_patches(all, poses, {}, {.gate = 0.1});
+    const std::vector<PlanePatch> patches =
+        plane_patches(all, surest_first(all), poses, {}, {.gate = 0.1});
     EXPECT_GT(patches.size(), 8u);
     for (const PlanePatch& patch : patches) {
       for (const std::uint32_t i : patch.surfels)
@@ -219,7 +220,7 @@ TEST(PlaneRefinement, CoversEachSurfelOnceAtMost) {
   const PatchParams params;
   std::vector<int> uses(all.size(), 0);
   std::size_t held_out = 0, used = 0;
-  for (const PlanePatch& patch : plane_patches(all, w.truth, {}, params)) {
+  for (const PlanePatch& patch : plane_patches(all, surest_first(all), w.truth, {}, params)) {
     EXPECT_TRUE(std::is_sorted(patch.surfels.begin(), patch.surfels.end()));
     for (const std::uint32_t i : patch.surfels) {
       ++uses[i];
