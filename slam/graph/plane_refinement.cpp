@@ -111,10 +111,12 @@ class Refinement {
       const bool rests = iterate(progress, result);
       result.converged = rests && farthest(found_at) < same_patches * gate_;
     }
-    // On the patches of the poses that came, which favours these.
+    // Patches of the poses that came favour these, and those of the others the others.
+    std::vector<WorkingPatch> both = first_patches;
+    both.insert(both.end(), patches_.begin(), patches_.end());
     const double most = limit(fitted_anew(first_patches, prior_), prior_);
-    result.thickness_before = thickness(first_patches, prior_, most);
-    result.thickness_after = thickness(first_patches, poses_, most);
+    result.thickness_before = thickness(both, prior_, most);
+    result.thickness_after = thickness(both, poses_, most);
   }
 
   const std::vector<Pose>& poses() const { return poses_; }

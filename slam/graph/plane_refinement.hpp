@@ -12,7 +12,7 @@
 namespace planum {
 
 struct PlaneRefinementParams {
-  double spacing = 0.15;           ///< m, surfaces are looked at so densely
+  double spacing = 0.1;           ///< m, surfaces are looked at so densely
   double patch_radius = 0.75;      ///< m; larger pieces of walls and floors are not flat
   double gate = 0;                 ///< m, surfels farther off a plane are not of it; 0: three times
                                    ///< the median noise of the scans

@@ -50,12 +50,14 @@ struct Scene {
   std::vector<Pose> truth;  ///< empty: not known
 };
 
-Scene simulated(const Building& building, std::vector<Pose> truth, std::uint64_t seed,
-                double noise) {
+Scene simulated(const Building& building, std::vector<Pose> truth, std::uint64_t seed, double noise,
+                double bend) {
   Scene scene;
-  for (const SimulatedScan& scan :
-       simulate_scans(building.mesh.mesh, truth, {.range_noise = noise, .seed = seed}))
+  for (SimulatedScan& scan :
+       simulate_scans(building.mesh.mesh, truth, {.range_noise = noise, .seed = seed})) {
+    for (Slice& slice : scan.scan.slices) slice.tilt *= 1 + bend;
     scene.clouds.push_back(points_from_slices(scan.scan).cloud);
+  }
   scene.odometry = drifted(truth, {.translation_per_metre = 0.02,
                                    .heading_per_metre = 0.004,
                                    .heading_per_radian = 0.01,
@@ -116,16 +118,16 @@ Scene apartment() {
   return scene;
 }
 
-Scene scene_of(const std::string& name, std::uint64_t seed, double noise) {
+Scene scene_of(const std::string& name, std::uint64_t seed, double noise, double bend) {
   if (name == "ring") {
     std::vector<testing::Entrance> entrances;
     const Building building = built(testing::ring_plan(entrances));
-    return simulated(building, testing::ring_path(entrances), seed, noise);
+    return simulated(building, testing::ring_path(entrances), seed, noise, bend);
   }
-  if (name == "demo") return simulated(demo_building(), demo_poses(), seed, noise);
+  if (name == "demo") return simulated(demo_building(), demo_poses(), seed, noise, bend);
   if (name == "random") {
     const RandomBuilding random = random_building(seed);
-    return simulated(random.building, random.poses, seed, noise);
+    return simulated(random.building, random.poses, seed, noise, bend);
   }
   if (name == "classroom") return classroom();
   if (name == "corridor") return corridor();
@@ -225,13 +227,15 @@ int run(int argc, char** argv) {
   const std::string name = argc > 1 ? argv[1] : "demo";
   const std::uint64_t seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1;
   const double noise = argc > 3 ? std::strtod(argv[3], nullptr) : 0.01;
-  const Scene scene = scene_of(name, seed, noise);
+  const double bend = argc > 4 ? std::strtod(argv[4], nullptr) : 0;
+  const Scene scene = scene_of(name, seed, noise, bend);
   std::vector<std::optional<MatchingScan>> ready(scene.clouds.size());
   parallel_for(ready.size(), 1,
                [&](std::size_t i, std::size_t) { ready[i] = matching_scan(scene.clouds[i]); });
   std::vector<MatchingScan> scans;
   for (auto& scan : ready) scans.push_back(std::move(*scan));
-  fmt::print("{} scans of {}, seed {}, noise {} m\n", scans.size(), name, seed, noise);
+  fmt::print("{} scans of {}, seed {}, noise {} m, bend {}\n", scans.size(), name, seed, noise,
+             bend);
 
   const SequenceMatch sequence = match_in_order(scene.odometry, icp_matcher(scans));
   PoseGraph graph = pose_graph(sequence);
