@@ -23,7 +23,9 @@ constexpr std::size_t least_surfels_of_scan = 4;
 /// Patches stay as they are while no scan moves more than this much of the gate.
 constexpr double same_patches = 0.1;
 /// Weights follow the distances for so long.
-constexpr int iterations_of_limit = 3;
+constexpr int iterations_of_weights = 4;
+/// Enough to know the median.
+constexpr std::size_t one_of_so_many = 4;
 
 void check(std::span<const Pose> poses, std::span<const MatchingScan> scans,
            std::span<const std::size_t> part_of_scan, const PlaneRefinementParams& params) {
@@ -50,32 +52,36 @@ void check(std::span<const Pose> poses, std::span<const MatchingScan> scans,
       throw Error(fmt::format("plane refinement: pose {} is not finite", i));
 }
 
-/// A patch while poses move: who makes its plane, scan by scan, and who judges it.
+/// What one scan sees of a patch.
+struct ScanPart {
+  std::uint32_t scan = 0;
+  std::vector<Eigen::Vector3f> points;  ///< m, scanner frame
+};
+
+void add(std::vector<ScanPart>& parts, const Surfel& surfel) {
+  if (parts.empty() || parts.back().scan != surfel.scan) parts.push_back({surfel.scan, {}});
+  parts.back().points.push_back(surfel.point);
+}
+
+/// A patch while poses move: the surfels that make its plane, and those held out, which judge it.
 struct WorkingPatch {
-  struct Part {
-    std::uint32_t scan = 0;
-    std::vector<std::uint32_t> surfels;
-  };
   Plane plane;  ///< in the world, as the poses are now
-  std::vector<Part> makers;
-  std::vector<std::uint32_t> judges;  ///< held-out surfels
+  std::vector<ScanPart> makers, judges;
 };
 
 WorkingPatch working(const PlanePatch& patch, std::span<const Surfel> surfels) {
   WorkingPatch result{.plane = patch.plane, .makers = {}, .judges = {}};
-  for (const std::uint32_t i : patch.surfels) {
-    if (surfels[i].held_out) {
-      result.judges.push_back(i);
-      continue;
-    }
-    if (result.makers.empty() || result.makers.back().scan != surfels[i].scan)
-      result.makers.push_back({surfels[i].scan, {}});
-    result.makers.back().surfels.push_back(i);
-  }
-  std::erase_if(result.makers, [](const WorkingPatch::Part& part) {
-    return part.surfels.size() < least_surfels_of_scan;
-  });
+  for (const std::uint32_t i : patch.surfels)
+    add(surfels[i].held_out ? result.judges : result.makers, surfels[i]);
+  std::erase_if(result.makers,
+                [](const ScanPart& part) { return part.points.size() < least_surfels_of_scan; });
   return result;
+}
+
+/// The same plane in the frame of a scan.
+Plane seen_from(const Pose& world_from_scan, const Plane& plane) {
+  return {world_from_scan.linear().transpose() * plane.normal,
+          plane.offset - plane.normal.dot(world_from_scan.translation())};
 }
 
 /// The refinement while it runs. Poses are in the frame of the first scan, so that it does not
@@ -105,15 +111,16 @@ class Refinement {
   void run(const Progress& progress, PlaneRefinement& result) {
     find_patches();
     const std::vector<WorkingPatch> first_patches = patches_;
-    for (int round = 0; round < params_.max_rounds && !result.converged; ++round) {
-      if (round > 0) find_patches();
+    int rounds = 0;
+    while (rounds < params_.max_rounds && !result.converged) {
+      if (rounds++ > 0) find_patches();
       const std::vector<Pose> found_at = poses_;
       const bool rests = iterate(progress, result);
       result.converged = rests && farthest(found_at) < same_patches * gate_;
     }
     // Patches of the poses that came favour these, and those of the others the others.
     std::vector<WorkingPatch> both = first_patches;
-    both.insert(both.end(), patches_.begin(), patches_.end());
+    if (rounds > 1) both.insert(both.end(), patches_.begin(), patches_.end());
     const double most = limit(fitted_anew(first_patches, prior_), prior_);
     result.thickness_before = thickness(both, prior_, most);
     result.thickness_after = thickness(both, poses_, most);
@@ -147,35 +154,31 @@ class Refinement {
     }
   }
 
-  double distance(const WorkingPatch& patch, std::uint32_t surfel,
-                  std::span<const Pose> poses) const {
-    return patch.plane.signed_distance(poses[surfels_[surfel].scan] *
-                                       surfels_[surfel].point.cast<double>());
-  }
-
-  /// The limit of the biweight from the distances of all surfels from the planes that they make.
+  /// The limit of the biweight from the distances of some surfels from the planes that they make.
   double limit(std::span<const WorkingPatch> patches, std::span<const Pose> poses) const {
     std::vector<double> distances;
     for (const WorkingPatch& patch : patches)
-      for (const WorkingPatch::Part& part : patch.makers)
-        for (const std::uint32_t i : part.surfels)
-          distances.push_back(std::abs(distance(patch, i, poses)));
+      for (const ScanPart& part : patch.makers) {
+        const Plane plane = seen_from(poses[part.scan], patch.plane);
+        for (std::size_t k = 0; k < part.points.size(); k += one_of_so_many)
+          distances.push_back(std::abs(plane.signed_distance(part.points[k].cast<double>())));
+      }
     return distances.empty() ? gate_ : std::clamp(biweight_limit(distances), least_noise, gate_);
   }
 
   /// The sums over what scans see of a patch, weighted by how well it suits the plane.
   SharedPlane observed(const WorkingPatch& patch, std::span<const Pose> poses, double limit) const {
     SharedPlane result;
-    for (const WorkingPatch::Part& part : patch.makers) {
-      PlaneObservation observation{.scan = part.scan,
-                                   .origin = surfels_[part.surfels.front()].point.cast<double>(),
-                                   .moments = {}};
+    for (const ScanPart& part : patch.makers) {
+      const Plane plane = seen_from(poses[part.scan], patch.plane);
+      PlaneObservation observation{
+          .scan = part.scan, .origin = part.points.front().cast<double>(), .moments = {}};
       std::size_t count = 0;
-      for (const std::uint32_t i : part.surfels) {
-        const double weight = biweight(distance(patch, i, poses), limit);
+      for (const Eigen::Vector3f& p : part.points) {
+        const Eigen::Vector3d point = p.cast<double>();
+        const double weight = biweight(plane.signed_distance(point), limit);
         if (weight == 0) continue;
-        observation.moments.add(surfels_[i].point.cast<double>() - observation.origin,
-                                weight_of_scan_[part.scan] * weight);
+        observation.moments.add(point - observation.origin, weight_of_scan_[part.scan] * weight);
         ++count;
       }
       if (count >= least_surfels_of_scan) result.push_back(observation);
@@ -206,24 +209,26 @@ class Refinement {
   /// Moves all poses until they rest; false if they do not.
   bool iterate(const Progress& progress, PlaneRefinement& result) {
     const double stiffness = std::pow(std::sin(params_.weak_angle), 2);
-    double most = gate_;
+    std::vector<SharedPlane> planes;
+    std::optional<PlaneSystem> system;
     for (int i = 0; i < params_.max_iterations; ++i) {
-      // Held after a while: poses rest on fixed weights only.
-      if (i < iterations_of_limit) most = limit(patches_, poses_);
-      std::vector<SharedPlane> planes = observed(patches_, poses_, most);
-      std::erase_if(planes, [](const SharedPlane& plane) { return plane.size() < 2; });
-      result.planes = planes.size();
-      result.observations = 0;
-      for (const SharedPlane& plane : planes) result.observations += plane.size();
-      if (planes.empty()) return true;
-      PlaneSystem system(planes, poses_.size());
-      system.linearize(planes, poses_, prior_, radius_, stiffness);
-      const std::optional<std::vector<Vector6d>> motions = system.solved();
+      // Weights are held after a while, and with them the sums: points are not looked at again.
+      if (i < iterations_of_weights) {
+        planes = observed(patches_, poses_, limit(patches_, poses_));
+        std::erase_if(planes, [](const SharedPlane& plane) { return plane.size() < 2; });
+        if (planes.empty()) return true;
+        system.emplace(planes, poses_.size());
+      }
+      system->linearize(planes, poses_, prior_, radius_, stiffness);
+      const std::optional<std::vector<Vector6d>> motions = system->solved();
       progress.report(static_cast<std::size_t>(++result.iterations), 0);
       if (!motions) return false;
       const std::vector<Pose> before = poses_;
       for (std::size_t k = 0; k < poses_.size(); ++k)
         poses_[k] = orthonormalized(exp_se3((*motions)[k]) * poses_[k]);
+      result.planes = planes.size();
+      result.observations = 0;
+      for (const SharedPlane& plane : planes) result.observations += plane.size();
       if (farthest(before) < params_.tolerance * noise_) return true;
     }
     return false;
@@ -233,15 +238,18 @@ class Refinement {
   /// surfel counts more than `most`.
   double thickness(std::vector<WorkingPatch> patches, std::span<const Pose> poses,
                    double most) const {
-    for (int pass = 0; pass < 2; ++pass) observed(patches, poses, most);
+    observed(patches, poses, most);
     const std::vector<SharedPlane> planes = observed(patches, poses, most);
     double sum = 0;
     std::size_t count = 0;
     for (std::size_t p = 0; p < patches.size(); ++p) {
       if (planes[p].size() < 2) continue;
-      for (const std::uint32_t i : patches[p].judges)
-        sum += std::min(std::abs(distance(patches[p], i, poses)), most);
-      count += patches[p].judges.size();
+      for (const ScanPart& part : patches[p].judges) {
+        const Plane plane = seen_from(poses[part.scan], patches[p].plane);
+        for (const Eigen::Vector3f& point : part.points)
+          sum += std::min(std::abs(plane.signed_distance(point.cast<double>())), most);
+        count += part.points.size();
+      }
     }
     return count > 0 ? sum / static_cast<double>(count) : 0;
   }
