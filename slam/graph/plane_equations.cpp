@@ -167,17 +167,20 @@ void PlaneSystem::add_prior(const std::vector<Pose>& poses, const std::vector<Po
   if (stiffness <= 0) return;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const auto [i, j] = pairs_[k];
-    const double squared_lever = radius[i] * radius[j], weight = stiffness * shared_[k];
+    // Half about either scan, so that their order does not matter.
+    const double weight = stiffness * shared_[k] / 2;
     Vector6d information;
     information << Eigen::Vector3d::Constant(weight),
-        Eigen::Vector3d::Constant(weight * squared_lever);
-    const Edge edge{.from = i, .to = j, .from_from_to = prior[i].inverse() * prior[j]};
-    const LinkEquation equation = edge_equation(edge, Matrix6d(information.asDiagonal()), poses);
-    matrix_.diagonal_block<Matrix6d>(i) += equation.information;
-    matrix_.diagonal_block<Matrix6d>(j) += equation.information;
-    matrix_.off_diagonal_block<Matrix6d>(k) -= equation.information;
-    gradient_.segment<6>(6 * static_cast<Eigen::Index>(j)) -= equation.weighted_difference;
-    gradient_.segment<6>(6 * static_cast<Eigen::Index>(i)) += equation.weighted_difference;
+        Eigen::Vector3d::Constant(weight * radius[i] * radius[j]);
+    for (const auto& [from, to] : {std::pair(i, j), std::pair(j, i)}) {
+      const Edge edge{.from = from, .to = to, .from_from_to = prior[from].inverse() * prior[to]};
+      const LinkEquation equation = edge_equation(edge, Matrix6d(information.asDiagonal()), poses);
+      matrix_.diagonal_block<Matrix6d>(i) += equation.information;
+      matrix_.diagonal_block<Matrix6d>(j) += equation.information;
+      matrix_.off_diagonal_block<Matrix6d>(k) -= equation.information;
+      gradient_.segment<6>(6 * static_cast<Eigen::Index>(to)) -= equation.weighted_difference;
+      gradient_.segment<6>(6 * static_cast<Eigen::Index>(from)) += equation.weighted_difference;
+    }
   }
 }
 

@@ -59,10 +59,12 @@ std::vector<Surfel> surfels_of(const MatchingScan& scan, std::uint32_t number, d
   return result;
 }
 
-/// A surfel in the world.
+/// A surfel in the world, with all that is asked about it.
 struct Placed {
   Eigen::Vector3f point, normal;
   std::uint32_t number = 0;
+  std::uint32_t part = 0;
+  bool held_out = false;
 };
 
 /// Grows patches one after another; surfels that are in one are taken out of the cells.
@@ -70,18 +72,19 @@ class PatchCover {
  public:
   PatchCover(std::span<const Surfel> surfels, std::span<const Pose> world_from_scan,
              std::span<const std::size_t> part_of_scan, const PatchParams& params)
-      : surfels_(surfels),
-        part_of_scan_(part_of_scan),
-        params_(params),
+      : params_(params),
         placed_(surfels.size()),
         is_free_(surfels.size(), true),
         may_be_seed_(surfels.size(), true) {
     parallel_for(surfels.size(), surfels_per_block, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Pose& pose = world_from_scan[surfels[i].scan];
-        placed_[i] = {(pose * surfels[i].point.cast<double>()).cast<float>(),
-                      (pose.linear() * surfels[i].normal.cast<double>()).cast<float>(),
-                      static_cast<std::uint32_t>(i)};
+        placed_[i] = {
+            (pose * surfels[i].point.cast<double>()).cast<float>(),
+            (pose.linear() * surfels[i].normal.cast<double>()).cast<float>(),
+            static_cast<std::uint32_t>(i),
+            part_of_scan.empty() ? 0 : static_cast<std::uint32_t>(part_of_scan[surfels[i].scan]),
+            surfels[i].held_out};
       }
     });
     for (const Placed& p : placed_)
@@ -103,10 +106,6 @@ class PatchCover {
   }
 
  private:
-  std::size_t part(std::uint32_t surfel) const {
-    return part_of_scan_.empty() ? 0 : part_of_scan_[surfels_[surfel].scan];
-  }
-
   /// Free surfels around a seed that face as it does.
   void find_candidates(std::uint32_t seed) {
     const Placed& s = placed_[seed];
@@ -123,7 +122,7 @@ class PatchCover {
           near_.push_back(&found->second);
           for (const Placed& p : found->second)
             if ((p.point - s.point).squaredNorm() <= radius * radius &&
-                p.normal.dot(s.normal) >= least_cosine && part(p.number) == part(seed))
+                p.normal.dot(s.normal) >= least_cosine && p.part == s.part)
               candidates_.push_back(p);
         }
   }
@@ -143,8 +142,7 @@ class PatchCover {
     for (int pass = 0; pass < 3; ++pass) {
       PointMoments moments;
       for (const Placed& p : candidates_)
-        if (!surfels_[p.number].held_out && belongs(p))
-          moments.add(p.point.cast<double>() - origin);
+        if (!p.held_out && belongs(p)) moments.add(p.point.cast<double>() - origin);
       const std::optional<PlaneFit> fit = fit_plane(moments);
       if (!fit || moments.count < static_cast<double>(params_.least_surfels) ||
           fit->variances[1] < params_.least_width * params_.least_width) {
@@ -173,8 +171,6 @@ class PatchCover {
         may_be_seed_[p.number] = false;
   }
 
-  std::span<const Surfel> surfels_;
-  std::span<const std::size_t> part_of_scan_;
   const PatchParams& params_;
   std::vector<Placed> placed_;
   std::vector<bool> is_free_, may_be_seed_;

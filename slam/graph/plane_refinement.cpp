@@ -21,7 +21,7 @@ constexpr double gate_per_noise_of_scans = 3;
 /// An observation of a plane by fewer surfels says nothing.
 constexpr std::size_t least_surfels_of_scan = 4;
 /// Patches stay as they are while no scan moves more than this much of the gate.
-constexpr double same_patches = 0.1;
+constexpr double same_patches = 0.2;
 /// Weights follow the distances for so long.
 constexpr int iterations_of_weights = 4;
 /// Enough to know the median.
