@@ -24,6 +24,8 @@ constexpr std::size_t least_surfels_of_scan = 4;
 constexpr double same_patches = 0.2;
 /// Weights follow the distances for so long.
 constexpr int iterations_of_weights = 4;
+/// Standard errors; a smaller gain may be chance.
+constexpr double least_gain = 2;
 /// Enough to know the median.
 constexpr std::size_t one_of_so_many = 4;
 
@@ -84,6 +86,28 @@ Plane seen_from(const Pose& world_from_scan, const Plane& plane) {
           plane.offset - plane.normal.dot(world_from_scan.translation())};
 }
 
+/// m, summed over points.
+struct SummedDistance {
+  double sum = 0, count = 0;
+};
+
+double mean(std::span<const SummedDistance> distances) {
+  SummedDistance all;
+  for (const SummedDistance& d : distances) all.sum += d.sum, all.count += d.count;
+  return all.count > 0 ? all.sum / all.count : 0;
+}
+
+/// How much smaller distances are after than before, in standard errors over the patches.
+double gain(std::span<const SummedDistance> before, std::span<const SummedDistance> after) {
+  double sum = 0, squares = 0;
+  for (std::size_t p = 0; p < before.size(); ++p) {
+    const double difference = before[p].sum - after[p].sum;
+    sum += difference;
+    squares += difference * difference;
+  }
+  return squares > 0 ? sum / std::sqrt(squares) : 0;
+}
+
 /// The refinement while it runs. Poses are in the frame of the first scan, so that it does not
 /// matter where the world has its origin.
 class Refinement {
@@ -122,8 +146,11 @@ class Refinement {
     std::vector<WorkingPatch> both = first_patches;
     if (rounds > 1) both.insert(both.end(), patches_.begin(), patches_.end());
     const double most = limit(fitted_anew(first_patches, prior_), prior_);
-    result.thickness_before = thickness(both, prior_, most);
-    result.thickness_after = thickness(both, poses_, most);
+    const std::vector<SummedDistance> before = judged(both, prior_, most);
+    const std::vector<SummedDistance> after = judged(both, poses_, most);
+    result.thickness_before = mean(before);
+    result.thickness_after = mean(after);
+    result.improved = gain(before, after) > least_gain;
   }
 
   const std::vector<Pose>& poses() const { return poses_; }
@@ -234,24 +261,21 @@ class Refinement {
     return false;
   }
 
-  /// m, mean distance of held-out surfels from the planes that the others make of their patches. No
-  /// surfel counts more than `most`.
-  double thickness(std::vector<WorkingPatch> patches, std::span<const Pose> poses,
-                   double most) const {
+  /// For each patch how far held-out surfels are from the plane that the others make. No surfel
+  /// counts more than `most`.
+  std::vector<SummedDistance> judged(std::vector<WorkingPatch> patches, std::span<const Pose> poses,
+                                     double most) const {
     observed(patches, poses, most);
-    const std::vector<SharedPlane> planes = observed(patches, poses, most);
-    double sum = 0;
-    std::size_t count = 0;
-    for (std::size_t p = 0; p < patches.size(); ++p) {
-      if (planes[p].size() < 2) continue;
+    observed(patches, poses, most);
+    std::vector<SummedDistance> result(patches.size());
+    for (std::size_t p = 0; p < patches.size(); ++p)
       for (const ScanPart& part : patches[p].judges) {
         const Plane plane = seen_from(poses[part.scan], patches[p].plane);
         for (const Eigen::Vector3f& point : part.points)
-          sum += std::min(std::abs(plane.signed_distance(point.cast<double>())), most);
-        count += part.points.size();
+          result[p].sum += std::min(std::abs(plane.signed_distance(point.cast<double>())), most);
+        result[p].count += static_cast<double>(part.points.size());
       }
-    }
-    return count > 0 ? sum / static_cast<double>(count) : 0;
+    return result;
   }
 
   std::span<const std::size_t> part_of_scan_;
@@ -289,12 +313,12 @@ PlaneRefinement refine_planes(std::span<const Pose> world_from_scan,
     result.reason = "no planes are shared";
     return result;
   }
-  if (!(result.thickness_after < result.thickness_before)) {
-    result.reason = fmt::format("planes would be {:.3f} mm thick instead of {:.3f} mm",
-                                1000 * result.thickness_after, 1000 * result.thickness_before);
+  if (!result.improved) {
+    result.reason =
+        fmt::format("planes would be {:.3f} mm thick instead of {:.3f} mm, which may be chance",
+                    1000 * result.thickness_after, 1000 * result.thickness_before);
     return result;
   }
-  result.improved = true;
   double squared = 0;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     result.poses[i] = orthonormalized(world_from_first * refinement.poses()[i]);

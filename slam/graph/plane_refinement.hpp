@@ -12,7 +12,7 @@
 namespace planum {
 
 struct PlaneRefinementParams {
-  double spacing = 0.1;           ///< m, surfaces are looked at so densely
+  double spacing = 0.1;            ///< m, surfaces are looked at so densely
   double patch_radius = 0.75;      ///< m; larger pieces of walls and floors are not flat
   double gate = 0;                 ///< m, surfels farther off a plane are not of it; 0: three times
                                    ///< the median noise of the scans
@@ -27,7 +27,7 @@ struct PlaneRefinementParams {
 
 struct PlaneRefinement {
   std::vector<Pose> poses;       ///< world_from_scan; those that came if `improved` is false
-  bool improved = false;         ///< planes are thinner than before
+  bool improved = false;         ///< planes are thinner than before, beyond chance
   std::string reason{};          ///< why not
   double thickness_before = 0;   ///< m, mean distance of held-out surfels from the planes of others
   double thickness_after = 0;    ///< m, the same with the poses that were found, taken or not
@@ -43,7 +43,8 @@ struct PlaneRefinement {
 /// thin as they can (plane adjustment: Liu & Zhang, BALM, RA-L 2021; Zhou et al., RA-L 2021). Poses
 /// must be good to about the gate. Directions that planes leave open stay as they are, and so do
 /// the first of whatever shares planes. Scans of different parts (`part_of_scan`; empty: all are
-/// one) share no planes. Never makes planes thicker: judged by points that took no part. Throws
+/// one) share no planes. If planes do not become thinner, as points see it that took no part,
+/// beyond chance, the poses that came are returned. Throws
 /// Error if poses and scans do not go together, or a parameter is out of range.
 PlaneRefinement refine_planes(std::span<const Pose> world_from_scan,
                               std::span<const MatchingScan> scans,
