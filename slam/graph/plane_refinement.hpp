@@ -43,9 +43,9 @@ struct PlaneRefinement {
 /// thin as they can (plane adjustment: Liu & Zhang, BALM, RA-L 2021; Zhou et al., RA-L 2021). Poses
 /// must be good to about the gate. Directions that planes leave open stay as they are, and so do
 /// the first of whatever shares planes. Scans of different parts (`part_of_scan`; empty: all are
-/// one) share no planes. If planes do not become thinner, as points see it that took no part,
-/// beyond chance, the poses that came are returned. Throws
-/// Error if poses and scans do not go together, or a parameter is out of range.
+/// one) share no planes. If points that took no part do not find planes thinner than before, beyond
+/// chance, the poses that came are returned. Throws Error if poses and scans do not go together, or
+/// a parameter is out of range.
 PlaneRefinement refine_planes(std::span<const Pose> world_from_scan,
                               std::span<const MatchingScan> scans,
                               std::span<const std::size_t> part_of_scan = {},
