@@ -146,8 +146,10 @@ class Refinement {
     std::vector<WorkingPatch> both = first_patches;
     if (rounds > 1) both.insert(both.end(), patches_.begin(), patches_.end());
     const double most = limit(fitted_anew(first_patches, prior_), prior_);
-    const std::vector<SummedDistance> before = judged(both, prior_, most);
-    const std::vector<SummedDistance> after = judged(both, poses_, most);
+    std::vector<SummedDistance> before = judged(both, prior_, most);
+    std::vector<SummedDistance> after = judged(both, poses_, most);
+    for (std::size_t p = 0; p < both.size(); ++p)
+      if (before[p].count == 0 || after[p].count == 0) before[p] = after[p] = {};
     result.thickness_before = mean(before);
     result.thickness_after = mean(after);
     result.improved = gain(before, after) > least_gain;
@@ -261,20 +263,22 @@ class Refinement {
     return false;
   }
 
-  /// For each patch how far held-out surfels are from the plane that the others make. No surfel
-  /// counts more than `most`.
+  /// For each patch how far held-out surfels are from the plane that the others make; nothing where
+  /// it is not shared. No surfel counts more than `most`.
   std::vector<SummedDistance> judged(std::vector<WorkingPatch> patches, std::span<const Pose> poses,
                                      double most) const {
     observed(patches, poses, most);
-    observed(patches, poses, most);
+    const std::vector<SharedPlane> planes = observed(patches, poses, most);
     std::vector<SummedDistance> result(patches.size());
-    for (std::size_t p = 0; p < patches.size(); ++p)
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+      if (planes[p].size() < 2) continue;
       for (const ScanPart& part : patches[p].judges) {
         const Plane plane = seen_from(poses[part.scan], patches[p].plane);
         for (const Eigen::Vector3f& point : part.points)
           result[p].sum += std::min(std::abs(plane.signed_distance(point.cast<double>())), most);
         result[p].count += static_cast<double>(part.points.size());
       }
+    }
     return result;
   }
 
