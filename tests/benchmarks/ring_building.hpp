@@ -60,7 +60,7 @@ inline BuildingPlan plan_of(std::vector<Entrance>& entrances) {
 }
 
 /// Round the ring counter-clockwise, into each room on the way, and a little past the start.
-inline std::vector<Pose> path(const std::vector<Entrance>& entrances) {
+inline std::vector<Pose> path(const std::vector<Entrance>& entrances, double step) {
   std::vector<Pose> poses;
   double x = corridor / 2, y = corridor / 2, heading = 0;
   const auto stop = [&](double to_x, double to_y, double degrees_of_heading) {
@@ -71,7 +71,7 @@ inline std::vector<Pose> path(const std::vector<Entrance>& entrances) {
   };
   const auto drive = [&](double to_x, double to_y, double along) {
     const double way = std::hypot(to_x - x, to_y - y);
-    const int steps = std::max(1, static_cast<int>(std::ceil(way / 2.2)));
+    const int steps = std::max(1, static_cast<int>(std::ceil(way / step)));
     const double from_x = x, from_y = y;
     for (int k = 1; k <= steps; ++k)
       stop(from_x + (to_x - from_x) * k / steps, from_y + (to_y - from_y) * k / steps, along);
@@ -111,10 +111,11 @@ struct RingBuilding {
   std::vector<Pose> poses;
 };
 
-inline RingBuilding ring_building() {
+/// `step`: m, between stops in the corridor.
+inline RingBuilding ring_building(double step = 2.2) {
   std::vector<ring::Entrance> entrances;
   Building building = built(ring::plan_of(entrances));
-  return {std::move(building), ring::path(entrances)};
+  return {std::move(building), ring::path(entrances, step)};
 }
 
 }  // namespace planum::testing

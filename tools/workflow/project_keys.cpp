@@ -269,6 +269,12 @@ const std::vector<Key>& project_keys() {
        {1, 10000},
        {},
        "at each gate"},
+      {"relaxation",
+       "refine",
+       FIELD(bool, refine_planes),
+       {},
+       {},
+       "at last move all scans so that the planes they share become thin"},
 
       {"world",
        "level",

@@ -58,6 +58,7 @@ struct Settings {
 
   std::string relaxation_method = "lu-milios";
   LuMiliosParams relaxation;
+  bool refine_planes = true;
 
   bool level = true;
   NormalParams normals;

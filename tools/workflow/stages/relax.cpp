@@ -4,6 +4,7 @@
 
 #include "slam/graph/graph_optimization.hpp"
 #include "slam/graph/loops.hpp"
+#include "slam/graph/plane_refinement.hpp"
 #include "slam/graph/pose_graph.hpp"
 #include "slam/graph/relax_lu_milios.hpp"
 #include "tools/workflow/pair_matching.hpp"
@@ -56,6 +57,17 @@ Relaxed relaxed(const PoseGraph& graph, StageContext& context) {
           result.iterations,       result.converged,       {}};
 }
 
+/// Sharpens walls; what it did, for the record.
+std::string refine(Relaxed& relaxed, StageContext& context) {
+  PlaneRefinement result =
+      refine_planes(relaxed.graph.poses, context.results.matching_scans(context.progress),
+                    components(relaxed.graph).of_pose, {}, context.progress);
+  relaxed.graph.poses = std::move(result.poses);
+  if (!result.improved) return "; not refined: " + result.reason;
+  return fmt::format("; {} planes {:.2f} -> {:.2f} mm", result.planes,
+                     1000 * result.thickness_before, 1000 * result.thickness_after);
+}
+
 /// Names the scans that are not part of the map.
 void report_groups(const Relaxed& relaxed, const Imported& imported, Manifest& record) {
   std::string lost;
@@ -95,6 +107,7 @@ void work(StageContext& context) {
     if (method != "lu-milios") result = optimized(std::move(result.graph), context);
     if (method != "pose-graph") result = relaxed(result.graph, context);
     context.record.summary = summary(result);
+    if (settings.refine_planes) context.record.summary += refine(result, context);
     if (!result.converged) {
       context.record.warnings.push_back(
           fmt::format("the relaxation did not converge in {} iterations", result.iterations));
@@ -110,7 +123,7 @@ void work(StageContext& context) {
 
 Stage relax_stage() {
   return {.name = "relax",
-          .version = 3,
+          .version = 4,
           .unit = "steps",
           .needs = {"import", "register"},
           .parameters = {"registration", "loops", "relaxation"},
