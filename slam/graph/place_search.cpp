@@ -11,22 +11,24 @@
 
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
-#include "slam/registration/overlap.hpp"
-#include "slam/registration/pairing.hpp"
 
 namespace planum {
 namespace {
 
-constexpr std::size_t evidence_samples = 1500;
+constexpr std::size_t evidence_samples = 1500, rough_samples = 200;
+constexpr float rough_distance = 0.25f;  ///< m
 constexpr float near_surface = 0.2f;     ///< m
 constexpr double least_touching = 0.02;  ///< m, scans are bent by so much
 constexpr double touching_per_noise = 3;
-constexpr float least_alike = 0.7f;       ///< cosine between normals of one surface
-constexpr double rough_gate = 0.6;        ///< m, poses of plans are good to about half of it
-constexpr double last_first_gate = 0.3;   ///< m, of the match that the rough one leads to
-constexpr double same_shift = 0.3;        ///< m, poses nearer than this are one ...
-constexpr double same_turn = radians(5);  ///< rad, ... if turned by no more
-constexpr double overlap_of_contradiction = 0.5;  ///< what it costs at a pose that is only rough
+constexpr float least_alike = 0.7f;        ///< cosine between normals of one surface
+constexpr double rough_gate = 0.6;         ///< m, poses of plans are good to about half of it
+constexpr double last_first_gate = 0.3;    ///< m, of the match that the rough one leads to
+constexpr double same_shift = 0.3;         ///< m, poses nearer than this are one ...
+constexpr double same_turn = radians(5);   ///< rad, ... if turned by no more
+constexpr std::size_t compared_poses = 8;  ///< of those that plans give, are looked at in space
+/// Contradictions that make a pose e times less likely: right poses have a third of it, or as much
+/// where scans are bent; where a pose is only rough, more.
+constexpr double contradiction_scale = 0.015, rough_contradiction_scale = 0.05;
 
 void require(bool good, const char* option, double value, const char* limit) {
   if (!good) throw Error(fmt::format("place search: {} must be {}, got {}", option, limit, value));
@@ -44,32 +46,57 @@ void check(const LocateParams& params) {
           "above 0, at most 1");
 }
 
+/// Every n-th sample, so that about so many are taken.
+std::size_t step_of(const RangeView& view, std::size_t samples) {
+  return std::max<std::size_t>(1, view.samples.size() / samples);
+}
+
+/// The local plane of the point next to a sample, if it faces the same way.
+const LocalPlane* plane_near(const RangeView::Sample& sample, const MatchingScan& scan,
+                             float distance) {
+  const auto found = scan.tree.nearest(sample.point, distance);
+  if (!found) return nullptr;
+  const LocalPlane& plane = scan.planes[found->index];
+  return plane.known() && sample.normal.dot(plane.normal) > least_alike ? &plane : nullptr;
+}
+
+RangeView::Sample moved(const RangeView::Sample& sample, const Eigen::Isometry3f& pose) {
+  return {pose * sample.point, pose.linear() * sample.normal};
+}
+
+/// The share of the source's surfaces that have the target's near them, one way.
+double rough_overlap(const Place& source, const Place& target, const Pose& target_from_source) {
+  const Eigen::Isometry3f pose = target_from_source.cast<float>();
+  double all = 0, near = 0;
+  const std::size_t step = step_of(source.view, rough_samples);
+  for (std::size_t s = 0; s < source.view.samples.size(); s += step) {
+    all += 1;
+    near +=
+        plane_near(moved(source.view.samples[s], pose), *target.scan, rough_distance) != nullptr;
+  }
+  return all > 0 ? near / all : 0;
+}
+
 /// The evidence of one way.
-PoseEvidence one_way(const MatchingScan& source, const MatchingScan& target, const Pose& pose) {
-  const auto touching =
-      static_cast<float>(least_touching + touching_per_noise * pair_noise(source, target));
-  const Eigen::Isometry3f target_from_source = pose.cast<float>();
+PoseEvidence one_way(const Place& source, const Place& target, const Pose& target_from_source) {
+  const auto touching = static_cast<float>(
+      least_touching + touching_per_noise * pair_noise(*source.scan, *target.scan));
+  const Eigen::Isometry3f pose = target_from_source.cast<float>();
   double all = 0, near = 0, touch = 0;
   std::vector<std::pair<Eigen::Vector2f, bool>> walls;  // how they face, and whether they touch
   Eigen::Matrix2f facing = Eigen::Matrix2f::Zero();
-  for (const std::uint32_t s : stable_selection(source.points, evidence_samples)) {
-    const LocalPlane& from = source.planes[s];
-    if (!from.known()) continue;
+  const std::size_t step = step_of(source.view, evidence_samples);
+  for (std::size_t s = 0; s < source.view.samples.size(); s += step) {
+    const RangeView::Sample& sample = source.view.samples[s];
+    const RangeView::Sample there = moved(sample, pose);
+    const LocalPlane* const plane = plane_near(there, *target.scan, near_surface);
+    const bool touches = plane && std::abs(plane->normal.dot(there.point - plane->mean)) < touching;
     all += 1;
-    const Eigen::Vector3f point = target_from_source * source.smoothed(s);
-    const auto found = target.tree.nearest(point, near_surface);
-    bool touches = false;
-    if (found) {
-      const LocalPlane& to = target.planes[found->index];
-      const bool alike =
-          to.known() && (target_from_source.linear() * from.normal).dot(to.normal) > least_alike;
-      touches = alike && std::abs(to.normal.dot(point - to.mean)) < touching;
-      near += alike;
-      touch += touches;
-    }
-    if (std::abs(from.normal.z()) > least_alike) continue;
-    walls.emplace_back(from.normal.head<2>(), touches);
-    if (touches) facing += from.normal.head<2>() * from.normal.head<2>().transpose();
+    near += plane != nullptr;
+    touch += touches;
+    if (std::abs(sample.normal.z()) > least_alike) continue;
+    walls.emplace_back(sample.normal.head<2>(), touches);
+    if (touches) facing += sample.normal.head<2>() * sample.normal.head<2>().transpose();
   }
   const Eigen::Vector2f least_certain =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix2f>(facing).eigenvectors().col(0);
@@ -94,8 +121,8 @@ std::vector<PlanMatch> rough_poses(const Place& source, const Place& target,
   std::vector<PlanMatch> matches = matches_of_plans(source.plan, target.plan, params);
   for (PlanMatch& match : matches) {
     const Pose& pose = match.target_from_source;
-    match.score = std::min(estimated_overlap(*source.scan, *target.scan, pose),
-                           estimated_overlap(*target.scan, *source.scan, pose.inverse()));
+    match.score = std::min(rough_overlap(source, target, pose),
+                           rough_overlap(target, source, pose.inverse()));
   }
   std::stable_sort(matches.begin(), matches.end(),
                    [](const PlanMatch& a, const PlanMatch& b) { return a.score > b.score; });
@@ -178,12 +205,15 @@ std::vector<std::pair<std::size_t, std::size_t>> similar_pairs(std::span<const P
 std::vector<PlaceCandidate> candidates_of(std::span<const Place> places, std::size_t target,
                                           std::size_t source, const PlaceSearchParams& params) {
   std::vector<PlaceCandidate> result;
-  for (const PlanMatch& match : rough_poses(places[source], places[target], params.plans)) {
-    if (match.score < params.least_score || result.size() >= 2 * params.poses) break;
+  std::size_t looked_at = 0;
+  PlanMatchParams plans = params.plans;
+  plans.max_matches = std::min(plans.max_matches, compared_poses);
+  for (const PlanMatch& match : rough_poses(places[source], places[target], plans)) {
+    if (match.score < params.least_score || looked_at++ == 2 * params.poses) break;
     const double contradicted =
         check_free_space(places[source].view, places[target].view, match.target_from_source)
             .contradicted();
-    const double score = match.score - overlap_of_contradiction * contradicted;
+    const double score = match.score * std::exp(-contradicted / rough_contradiction_scale);
     if (score >= params.least_score)
       result.push_back({target, source, match.target_from_source, score});
   }
@@ -196,7 +226,7 @@ std::vector<PlaceCandidate> candidates_of(std::span<const Place> places, std::si
 }  // namespace
 
 double PoseEvidence::score() const {
-  return overlap * std::max(0.0, 1 - contradicted / most_contradicted);
+  return overlap * std::exp(-contradicted / contradiction_scale);
 }
 
 Place place_of(const MatchingScan& scan) {
@@ -212,8 +242,8 @@ std::vector<Place> places_of(std::span<const MatchingScan> scans) {
 
 PoseEvidence pose_evidence(const Place& source, const Place& target,
                            const Pose& target_from_source) {
-  const PoseEvidence there = one_way(*source.scan, *target.scan, target_from_source);
-  const PoseEvidence back = one_way(*target.scan, *source.scan, target_from_source.inverse());
+  const PoseEvidence there = one_way(source, target, target_from_source);
+  const PoseEvidence back = one_way(target, source, target_from_source.inverse());
   return {std::min(there.overlap, back.overlap), std::min(there.closeness, back.closeness),
           std::min(there.support, back.support),
           check_free_space(source.view, target.view, target_from_source).contradicted()};

@@ -34,7 +34,7 @@ struct PoseEvidence {
   double support = 0;       ///< the same of walls across the least certain horizontal direction
   double contradicted = 0;  ///< share that the other scan saw through, see FreeSpaceCheck
 
-  /// The overlap, less where free space contradicts it; 0 at most_contradicted.
+  /// The overlap, less (exponentially) where free space contradicts it.
   double score() const;
 };
 
@@ -42,9 +42,9 @@ PoseEvidence pose_evidence(const Place& source, const Place& target,
                            const Pose& target_from_source);
 
 struct PlaceSearchParams {
-  std::size_t similar = 30;   ///< scans by descriptor that each one is compared with; 0: all
-  std::size_t poses = 2;      ///< at most, of a pair
-  double least_score = 0.25;  ///< share of surfaces within 0.25 m, less contradictions
+  std::size_t similar = 20;  ///< scans by descriptor that each one is compared with; 0: all
+  std::size_t poses = 2;     ///< at most, of a pair
+  double least_score = 0.1;  ///< share of surfaces within 0.25 m, less for contradictions
   PlanMatchParams plans = {};
 };
 
@@ -69,7 +69,7 @@ std::vector<PlaceCandidate> find_places(std::span<const MatchingScan> scans,
 struct LocateParams {
   double min_overlap = 0.3;         ///< see PoseEvidence
   double min_closeness = 0.7;       ///< the same
-  double min_support = 0.05;        ///< the same
+  double min_support = 0.02;        ///< the same
   double max_contradicted = 0.025;  ///< stricter than where a guess is known
   double max_rival = 0.6;           ///< score of another pose, in that of the best
   std::size_t tried_poses = 6;      ///< are matched, of those that plans give

@@ -267,6 +267,8 @@ void print_found(const Scene& scene, const std::vector<Place>& places) {
         return c.target == a && c.source == b && near_truth(c);
       });
     }
+  for (std::size_t k = 0; std::getenv("PLACES_VERBOSE") && k < candidates.size(); k += 1 + candidates.size() / 20)
+    fmt::print("    {} {:.2f} {}\n", k, candidates[k].score, near_truth(candidates[k]));
   std::size_t first = 0;
   const std::size_t top = std::min(candidates.size(), places.size());
   for (std::size_t k = 0; k < top; ++k) first += near_truth(candidates[k]);
