@@ -7,7 +7,9 @@
 #include <unordered_map>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
+#include "slam/core/error.hpp"
 #include "slam/registration/pairing.hpp"
 
 namespace planum {
@@ -162,6 +164,19 @@ void add_near_walls(ScanPlan& plan) {
     }
 }
 
+void check(const PlanMatchParams& params) {
+  const auto require = [](bool good, const char* option, auto value, const char* limit) {
+    if (!good) throw Error(fmt::format("scan plan: {} must be {}, got {}", option, limit, value));
+  };
+  require(params.max_distance > 0 && params.max_distance <= 32, "max_distance", params.max_distance,
+          "above 0, at most 32 m");
+  require(params.least_facing >= 0 && params.least_facing <= 1, "least_facing", params.least_facing,
+          "between 0 and 1");
+  // Sums of 16 bits must do.
+  require(params.max_walls >= 1 && params.max_walls <= 2000, "max_walls", params.max_walls,
+          "between 1 and 2000");
+}
+
 /// How well facings go together when the source is turned by so many bins.
 std::vector<float> facing_agreement(const ScanPlan& source, const ScanPlan& target) {
   std::vector<float> result(ScanPlan::azimuths, 0);
@@ -313,7 +328,8 @@ ScanPlan scan_plan(const MatchingScan& scan) {
 
 std::vector<PlanMatch> matches_of_plans(const ScanPlan& source, const ScanPlan& target,
                                         const PlanMatchParams& params) {
-  const std::size_t step = 1 + source.walls.size() / std::max<std::size_t>(params.max_walls, 1);
+  check(params);
+  const std::size_t step = 1 + source.walls.size() / params.max_walls;
   const double height = climb(source, target);
   const bool same_eye_level = std::abs(height) < eye_level;
   ShiftScores scores(static_cast<int>(std::ceil(params.max_distance / ScanPlan::cell)));

@@ -35,7 +35,7 @@ struct ScanPlan {
   std::array<float, azimuths> facing_shares = {};              ///< of the walls' weights, smoothed
   std::array<std::array<float, levels>, 2> level_shares = {};  ///< surfaces that face up; down
   std::array<std::vector<std::int8_t>, facings> near_wall;     ///< rows of cells, see scan_plan.cpp
-  std::vector<std::int8_t> free;  ///< -1 where rays at eye level passed
+  std::vector<std::int8_t> free;  ///< negative where rays at eye level passed
 };
 
 /// The turn that makes floors and ceilings level, if the scanner's z is upward within 20 degrees;
@@ -61,7 +61,7 @@ struct PlanMatchParams {
 
 /// Looks at all shifts (to a cell) in the directions in which walls face alike (correlative
 /// matching: Olson, ICRA 2009); local maxima only. The height is the one that suits floor and
-/// ceiling best.
+/// ceiling best. Throws Error if a parameter is out of range.
 std::vector<PlanMatch> matches_of_plans(const ScanPlan& source, const ScanPlan& target,
                                         const PlanMatchParams& params = {});
 

@@ -2,7 +2,8 @@
 // How well free space tells right poses from wrong ones; how often the places most like a scan's
 // overlap it; how many consecutive pairs are located from no guess; false answers; times.
 //
-// usage: place_benchmark [SCENE]   SCENE: a part of the name of those to take
+// usage: place_benchmark [SCENE [free-space]]   SCENE: a part of the name of those to take
+// PLACES_VERBOSE in the environment: also list what was wrong or not sure.
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -250,6 +251,7 @@ void print_located(const Scene& scene, const std::vector<Place>& places) {
                    a.reason);
 }
 
+/// What is proposed without poses, and how much of it is right.
 void print_found(const Scene& scene, const std::vector<Place>& places) {
   const double begin = wall_clock();
   const auto candidates = find_places(places);
@@ -267,7 +269,8 @@ void print_found(const Scene& scene, const std::vector<Place>& places) {
         return c.target == a && c.source == b && near_truth(c);
       });
     }
-  for (std::size_t k = 0; std::getenv("PLACES_VERBOSE") && k < candidates.size(); k += 1 + candidates.size() / 20)
+  for (std::size_t k = 0; std::getenv("PLACES_VERBOSE") && k < candidates.size();
+       k += 1 + candidates.size() / 20)
     fmt::print("    {} {:.2f} {}\n", k, candidates[k].score, near_truth(candidates[k]));
   std::size_t first = 0;
   const std::size_t top = std::min(candidates.size(), places.size());

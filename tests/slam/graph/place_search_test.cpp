@@ -112,6 +112,8 @@ TEST(Locate, GivesNoAnswerForScansOfNothing) {
 TEST(Locate, RefusesBadParameters) {
   EXPECT_EQ(message_of([] { locate(matching_scan({}), matching_scan({}), {.min_overlap = 2}); }),
             "place search: min_overlap must be between 0 and 1, got 2");
+  EXPECT_EQ(message_of([] { matches_of_plans({}, {}, {.max_distance = 0}); }),
+            "scan plan: max_distance must be above 0, at most 32 m, got 0");
 }
 
 struct Walk {
