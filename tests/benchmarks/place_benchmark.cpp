@@ -254,8 +254,10 @@ void print_located(const Scene& scene, const std::vector<Place>& places) {
 /// What is proposed without poses, and how much of it is right.
 void print_found(const Scene& scene, const std::vector<Place>& places) {
   const double begin = wall_clock();
+  const std::clock_t worked = std::clock();
   const auto candidates = find_places(places);
   const double spent = wall_clock() - begin;
+  const double work = static_cast<double>(std::clock() - worked) / CLOCKS_PER_SEC;
   std::size_t pairs = 0, found = 0, good = 0;
   const auto near_truth = [&](const PlaceCandidate& c) {
     return right(c.target_from_source, true_motion(scene, c.target, c.source), 0.6, radians(8));
@@ -277,8 +279,8 @@ void print_found(const Scene& scene, const std::vector<Place>& places) {
   for (std::size_t k = 0; k < top; ++k) first += near_truth(candidates[k]);
   fmt::print(
       "  places: {} candidates, {} right, {} of the first {}; {} of {} pairs with overlap over "
-      "0.35; {:.2f} s\n",
-      candidates.size(), good, first, top, found, pairs, spent);
+      "0.35; {:.2f} s, {:.2f} s of work\n",
+      candidates.size(), good, first, top, found, pairs, spent, work);
 }
 
 }  // namespace
