@@ -7,7 +7,9 @@
 #include <unordered_map>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
+#include "slam/core/error.hpp"
 #include "slam/registration/pairing.hpp"
 
 namespace planum {
@@ -39,26 +41,6 @@ std::size_t at(int column, int row) {
 int part_of_turn(double angle, int parts) {
   const int part = static_cast<int>(std::lround(angle / (2 * pi) * parts)) % parts;
   return part < 0 ? part + parts : part;
-}
-
-/// The turn that makes the mean normal of floors and ceilings vertical.
-Eigen::Matrix3d levelling(const MatchingScan& scan) {
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  for (const double cone : {20.0, 10.0, 5.0}) {
-    const double least = std::cos(radians(cone));
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    std::size_t count = 0;
-    for (const LocalPlane& plane : scan.planes) {
-      const Eigen::Vector3d normal = plane.normal.cast<double>();
-      const double cosine = normal.dot(up);
-      if (std::abs(cosine) < least) continue;
-      sum += cosine > 0 ? normal : Eigen::Vector3d(-normal);
-      ++count;
-    }
-    if (count < scan.points.size() / 20 || count == 0) break;
-    up = sum.normalized();
-  }
-  return Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
 
 /// Columns of wall points by cell and facing.
@@ -174,8 +156,7 @@ void add_near_walls(ScanPlan& plan) {
       auto& cells = plan.near_wall[static_cast<std::size_t>(f)];
       for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {
-          const int column = cell_of(wall.position.x()) + dx,
-                    row = cell_of(wall.position.y()) + dy;
+          const int column = cell_of(wall.position.x()) + dx, row = cell_of(wall.position.y()) + dy;
           if (!inside(column, row)) continue;
           std::int8_t& value = cells[at(column, row)];
           value = std::max(value, dx == 0 && dy == 0 ? on_wall : beside_wall);
@@ -183,13 +164,25 @@ void add_near_walls(ScanPlan& plan) {
     }
 }
 
+void check(const PlanMatchParams& params) {
+  const auto require = [](bool good, const char* option, auto value, const char* limit) {
+    if (!good) throw Error(fmt::format("scan plan: {} must be {}, got {}", option, limit, value));
+  };
+  require(params.max_distance > 0 && params.max_distance <= 32, "max_distance", params.max_distance,
+          "above 0, at most 32 m");
+  require(params.least_facing >= 0 && params.least_facing <= 1, "least_facing", params.least_facing,
+          "between 0 and 1");
+  // Sums of 16 bits must do.
+  require(params.max_walls >= 1 && params.max_walls <= 2000, "max_walls", params.max_walls,
+          "between 1 and 2000");
+}
+
 /// How well facings go together when the source is turned by so many bins.
 std::vector<float> facing_agreement(const ScanPlan& source, const ScanPlan& target) {
   std::vector<float> result(ScanPlan::azimuths, 0);
   for (std::size_t turn = 0; turn < result.size(); ++turn)
     for (std::size_t b = 0; b < result.size(); ++b)
-      result[turn] +=
-          source.facing_shares[b] * target.facing_shares[(b + turn) % result.size()];
+      result[turn] += source.facing_shares[b] * target.facing_shares[(b + turn) % result.size()];
   return result;
 }
 
@@ -248,7 +241,8 @@ class ShiftScores {
     for (int dy = std::max(-reach_, -row); dy <= std::min(reach_, ScanPlan::width - 1 - row);
          ++dy) {
       const std::int8_t* const from = cells.data() + at(column + first, row + dy);
-      std::int16_t* const to = sums_.data() + static_cast<std::ptrdiff_t>((dy + reach_) * side_ + first + reach_);
+      std::int16_t* const to =
+          sums_.data() + static_cast<std::ptrdiff_t>((dy + reach_) * side_ + first + reach_);
       for (std::size_t k = 0; k < count; ++k)
         to[k] = static_cast<std::int16_t>(to[k] + weight * from[k]);
     }
@@ -263,7 +257,8 @@ class ShiftScores {
         const int sum = sums_[static_cast<std::size_t>(here)];
         if (sum < least || sum <= 0) continue;
         bool highest = true;
-        for (const int beside : {-side_ - 1, -side_, -side_ + 1, -1, 1, side_ - 1, side_, side_ + 1})
+        for (const int beside :
+             {-side_ - 1, -side_, -side_ + 1, -1, 1, side_ - 1, side_, side_ + 1})
           highest = highest && sums_[static_cast<std::size_t>(here + beside)] <= sum;
         if (highest) body(x - reach_, y - reach_, sum);
       }
@@ -297,9 +292,28 @@ std::vector<Found> distinct(std::vector<Found> all, std::size_t most) {
 
 }  // namespace
 
+Eigen::Matrix3d level_from_scan(const MatchingScan& scan) {
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  for (const double cone : {20.0, 10.0, 5.0}) {
+    const double least = std::cos(radians(cone));
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    std::size_t count = 0;
+    for (const LocalPlane& plane : scan.planes) {
+      const Eigen::Vector3d normal = plane.normal.cast<double>();
+      const double cosine = normal.dot(up);
+      if (std::abs(cosine) < least) continue;
+      sum += cosine > 0 ? normal : Eigen::Vector3d(-normal);
+      ++count;
+    }
+    if (count < scan.points.size() / 20 || count == 0) break;
+    up = sum.normalized();
+  }
+  return Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
 ScanPlan scan_plan(const MatchingScan& scan) {
   ScanPlan plan;
-  plan.level_from_scan = levelling(scan);
+  plan.level_from_scan = level_from_scan(scan);
   const Eigen::Matrix3f turn = plan.level_from_scan.cast<float>();
   plan.walls = walls_of(scan, turn);
   for (const ScanPlan::Wall& wall : plan.walls)
@@ -314,7 +328,8 @@ ScanPlan scan_plan(const MatchingScan& scan) {
 
 std::vector<PlanMatch> matches_of_plans(const ScanPlan& source, const ScanPlan& target,
                                         const PlanMatchParams& params) {
-  const std::size_t step = 1 + source.walls.size() / std::max<std::size_t>(params.max_walls, 1);
+  check(params);
+  const std::size_t step = 1 + source.walls.size() / params.max_walls;
   const double height = climb(source, target);
   const bool same_eye_level = std::abs(height) < eye_level;
   ShiftScores scores(static_cast<int>(std::ceil(params.max_distance / ScanPlan::cell)));
