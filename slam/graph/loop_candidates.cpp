@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <optional>
 
 #include "slam/core/parallel.hpp"
 #include "slam/graph/path_covariance.hpp"
+#include "slam/graph/place_search.hpp"
 #include "slam/registration/overlap.hpp"
 
 namespace planum {
@@ -14,13 +16,6 @@ namespace {
 
 /// A gate reaches this many standard deviations of the guess.
 constexpr double gate_per_deviation = 3;
-
-/// m, standard deviation of where a pose with this covariance puts a point so far away.
-double placed_within(const Matrix6d& covariance, double radius) {
-  const double shift = covariance.diagonal().head<3>().maxCoeff();
-  const double turn = covariance.diagonal().tail<3>().maxCoeff();
-  return std::sqrt(shift + radius * radius * turn);
-}
 
 Matrix6d isotropic(double translation, double rotation) {
   Vector6d variance;
@@ -63,6 +58,12 @@ std::vector<LoopCandidate> most_overlapping(const std::vector<LoopCandidate>& al
 
 }  // namespace
 
+double placed_within(const Matrix6d& covariance, double radius) {
+  const double shift = covariance.diagonal().head<3>().maxCoeff();
+  const double turn = covariance.diagonal().tail<3>().maxCoeff();
+  return std::sqrt(shift + radius * radius * turn);
+}
+
 double LoopCandidate::gate(const LoopParams& params) const {
   return std::clamp(gate_per_deviation * std::sqrt(covariance.diagonal().head<3>().maxCoeff()),
                     params.least_gate, params.most_gate);
@@ -92,6 +93,34 @@ std::vector<LoopCandidate> loop_candidates(std::span<const MatchingScan> scans,
   std::vector<LoopCandidate> all;
   for (const auto& some : of_scan) all.insert(all.end(), some.begin(), some.end());
   return most_overlapping(all, scans.size(), per_scan);
+}
+
+std::vector<LoopCandidate> candidates_by_appearance(std::span<const MatchingScan> scans,
+                                                    const PoseGraph& graph,
+                                                    const LoopParams& params,
+                                                    const Progress& progress) {
+  std::vector<std::vector<Matrix6d>> covariances(scans.size());
+  std::vector<std::uint8_t> open(scans.size(), 0);
+  parallel_for(scans.size(), 1, [&](std::size_t from, std::size_t) {
+    for (const auto& known : path_covariances(graph, from, step_noise(params)))
+      covariances[from].push_back(known.value_or(unknown_pose(params)));
+    for (std::size_t to = from + 1; to < scans.size(); ++to)
+      if (placed_within(covariances[from][to], 0) >= params.most_gate) open[from] = 1;
+  });
+  if (std::find(open.begin(), open.end(), 1) == open.end()) return {};
+  std::vector<LoopCandidate> result;
+  for (const PlaceCandidate& place : find_places(scans, {}, progress)) {
+    const Matrix6d& covariance = covariances[place.target][place.source];
+    if (place.source < place.target + 2 || placed_within(covariance, 0) < params.most_gate)
+      continue;
+    result.push_back({.from = place.target,
+                      .to = place.source,
+                      .guess = graph.poses[place.target].inverse() * graph.poses[place.source],
+                      .start = place.target_from_source,
+                      .covariance = covariance,
+                      .overlap = place.score});
+  }
+  return result;
 }
 
 }  // namespace planum

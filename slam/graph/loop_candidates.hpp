@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,13 +16,17 @@ namespace planum {
 /// A pair of scans that may be a loop, and how well the path between them is known.
 struct LoopCandidate {
   std::size_t from = 0, to = 0;
-  Pose guess = Pose::Identity();  ///< from_from_to
+  Pose guess = Pose::Identity();  ///< from_from_to, as the path has it
+  std::optional<Pose> start{};    ///< where the match begins, if not at the guess
   Matrix6d covariance = Matrix6d::Zero();
   double overlap = 0;  ///< estimated share of common points
 
   /// m, the first gate of a match: some standard deviations of the guess.
   double gate(const LoopParams& params) const;
 };
+
+/// m, standard deviation of where a pose with this covariance puts a point so far away.
+double placed_within(const Matrix6d& covariance, double radius);
 
 /// What a step of the path may be off beyond its covariance.
 Matrix6d step_noise(const LoopParams& params);
@@ -37,5 +42,13 @@ using WorthATry = std::function<bool(const LoopCandidate&)>;
 std::vector<LoopCandidate> loop_candidates(std::span<const MatchingScan> scans,
                                            const PoseGraph& graph, const WorthATry& worth_a_try,
                                            std::size_t per_scan, const LoopParams& params);
+
+/// Pairs that look alike (find_places) and that the path leaves open by more than the widest gate;
+/// their matches begin at the pose that the likeness gives. Scans are not compared if the path is
+/// surer of all pairs.
+std::vector<LoopCandidate> candidates_by_appearance(std::span<const MatchingScan> scans,
+                                                    const PoseGraph& graph,
+                                                    const LoopParams& params,
+                                                    const Progress& progress);
 
 }  // namespace planum

@@ -27,8 +27,9 @@ bool usable(const Alignment& alignment, const LoopParams& params) {
 }
 
 std::vector<Pose> starts(const LoopCandidate& candidate, const LoopParams& params) {
-  std::vector<Pose> result = {candidate.guess};
-  if (candidate.gate(params) <= gates_of_one_start * params.least_gate) return result;
+  std::vector<Pose> result = {candidate.start.value_or(candidate.guess)};
+  if (candidate.start || candidate.gate(params) <= gates_of_one_start * params.least_gate)
+    return result;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(
       candidate.covariance.topLeftCorner<3, 3>());
   const double most = params.most_gate / 2;

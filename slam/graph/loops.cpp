@@ -62,9 +62,10 @@ class LoopSearch {
       // Few at first, while the path is unsure and gates are wide: they make the others easy.
       const std::size_t per_scan =
           std::min(params_.candidates_per_scan, std::size_t{1} << std::min(round, 20));
-      const std::vector<LoopCandidate> found = loop_candidates(
+      std::vector<LoopCandidate> found = loop_candidates(
           scans_, with_loops(), [this](const LoopCandidate& pair) { return worth_a_try(pair); },
           per_scan, params_);
+      if (round == 0 && params_.by_appearance) add_by_appearance(found, progress);
       if (found.empty()) break;
       verify(found, progress);
       drop_inconsistent();
@@ -90,6 +91,14 @@ class LoopSearch {
     const Pose change = before.guess.inverse() * pair.guess;
     return !edge.accepted && (change.translation().norm() >= params_.least_gate / 2 ||
                               pair.gate(params_) <= before.gate(params_) / 2);
+  }
+
+  /// The best alike of each pair that is no candidate yet.
+  void add_by_appearance(std::vector<LoopCandidate>& found, const Progress& progress) const {
+    std::set<ScanPair> known;
+    for (const LoopCandidate& pair : found) known.insert({pair.from, pair.to});
+    for (const LoopCandidate& pair : candidates_by_appearance(scans_, graph_, params_, progress))
+      if (known.insert({pair.from, pair.to}).second) found.push_back(pair);
   }
 
   PoseGraph with_loops() const {

@@ -27,9 +27,11 @@ struct LoopParams {
   double max_rms_ratio = 2.5;  ///< rms of a match, in median rms of the steps of the path
   double max_contradicted = most_contradicted;  ///< share of the surfaces of one scan that rays of
                                                 ///< the other go through
-  double least_gate = 0.3;  ///< m, first gate of a match however sure the path is
-  double most_gate = 3.0;   ///< m, the same however unsure
-  int max_rounds = 5;       ///< of looking for candidates with the loops so far closed
+  double least_gate = 0.3;    ///< m, first gate of a match however sure the path is
+  double most_gate = 3.0;     ///< m, the same however unsure
+  bool by_appearance = true;  ///< also pairs that look alike, where the path leaves more open than
+                              ///< most_gate
+  int max_rounds = 5;         ///< of looking for candidates with the loops so far closed
 };
 
 /// Looks for scans that were taken near each other but not one after another: candidates by

@@ -9,9 +9,9 @@
 #include "slam/core/progress.hpp"
 #include "slam/graph/scan_descriptor.hpp"
 #include "slam/graph/scan_plan.hpp"
-#include "slam/graph/see_through.hpp"
 #include "slam/registration/icp.hpp"
 #include "slam/registration/matching_scan.hpp"
+#include "slam/registration/see_through.hpp"
 
 namespace planum {
 

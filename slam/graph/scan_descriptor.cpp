@@ -84,7 +84,7 @@ ScanDescriptor scan_descriptor(const MatchingScan& scan, const ScanDescriptorPar
     throw Error(fmt::format("scan descriptor: samples must be >= 2, got {}", params.samples));
   const Eigen::Matrix3f level = level_from_scan(scan).cast<float>();
   std::vector<Surface> surfaces;
-  for (const std::uint32_t i : stable_selection(scan.points, params.samples))
+  for (const std::uint32_t i : scan.selection(params.samples))
     if (scan.planes[i].known())
       surfaces.push_back({level * scan.smoothed(i), level * scan.planes[i].normal});
   ScanDescriptor result;

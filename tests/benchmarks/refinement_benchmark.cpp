@@ -238,7 +238,7 @@ int run(int argc, char** argv) {
 
   const SequenceMatch sequence = match_in_order(scene.odometry, icp_matcher(scans));
   PoseGraph graph = pose_graph(sequence);
-  const std::vector<Edge> loops = find_loops(scans, graph, icp_loop_matcher(scans));
+  const std::vector<Edge> loops = find_loops(scans, graph, icp_gated_matcher(scans));
   graph.edges.insert(graph.edges.end(), loops.begin(), loops.end());
   const double start = now();
   const std::vector<Pose> relaxed = relax_lu_milios(graph, scans).graph.poses;

@@ -60,6 +60,25 @@ Alignment PairMatching::align_to_metascan(std::span<const Pose> earlier, const P
   });
 }
 
+Alignment PairMatching::align_without_guess(std::size_t target, std::size_t source) {
+  const Imported& imported = results_.imported.get();
+  const Digest key = Hasher()
+                         .text("without a guess")
+                         .digest(parameters_)
+                         .digest(imported.digests[target])
+                         .digest(imported.digests[source])
+                         .result();
+  const auto place = [this](std::size_t scan) -> const Place& {
+    const auto known = places_.find(scan);
+    return known != places_.end() ? known->second
+                                  : places_.emplace(scan, place_of(scans()[scan])).first->second;
+  };
+  return remembered(imported.scans[target].id + "-" + imported.scans[source].id, key, [&] {
+    const Location location = locate(place(source), place(target), {.matching = icp_});
+    return location.found ? location.alignment : Alignment{};
+  });
+}
+
 Alignment PairMatching::remembered(const std::string& name, const Digest& key,
                                    const std::function<Alignment()>& match) {
   // The same scans may be matched again from another guess: the end of the name tells them apart.

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <mutex>
 #include <span>
 #include <vector>
 
 #include "slam/graph/loops.hpp"
+#include "slam/graph/place_search.hpp"
 #include "slam/registration/matching_scan.hpp"
 #include "slam/registration/sequence.hpp"
 #include "tools/workflow/results.hpp"
@@ -29,6 +31,9 @@ class PairMatching {
   /// The scan after the earlier ones with all of those that overlap it; see MetascanMatcher.
   Alignment align_to_metascan(std::span<const Pose> earlier, const Pose& guess, double first_gate);
 
+  /// Without a guess; no pairs if it is not sure where the source is. See locate().
+  Alignment align_without_guess(std::size_t target, std::size_t source);
+
   /// For functions that match; it must outlive their calls.
   PairMatcher matcher();
   GatedPairMatcher gated_matcher();
@@ -48,6 +53,7 @@ class PairMatching {
   Digest parameters_;  ///< of all that a match depends on but the scans and the guess
   std::once_flag ready_;
   const std::vector<MatchingScan>* scans_ = nullptr;
+  std::map<std::size_t, Place> places_;  ///< of the scans that were looked for without a guess
 };
 
 }  // namespace planum

@@ -33,6 +33,9 @@ SequenceMatch trusted(const std::vector<Pose>& poses, const OdometryNoise& noise
   return match;
 }
 
+/// Of steps about which nothing is known: anywhere within a large building.
+constexpr OdometryNoise unknown_odometry{.translation = 50, .rotation = pi / 2};
+
 /// What can be done for steps whose match cannot be trusted.
 class StepAids {
  public:
@@ -44,10 +47,14 @@ class StepAids {
   SequenceAids aids() {
     return {.second = matching_.gated_matcher(),
             .metascan = matching_.metascan_matcher(),
-            .locate = {},
-            .contradicted = [this](std::size_t target, std::size_t source, const Pose& pose) {
-              return check_free_space(view(source), view(target), pose).contradicted();
-            }};
+            .locate = [this](std::size_t target, std::size_t source) -> std::optional<Alignment> {
+              const Alignment found = matching_.align_without_guess(target, source);
+              return found.pairs > 0 ? std::optional(found) : std::nullopt;
+            },
+            .contradicted =
+                [this](std::size_t target, std::size_t source, const Pose& pose) {
+                  return check_free_space(view(source), view(target), pose).contradicted();
+                }};
   }
 
  private:
@@ -68,6 +75,7 @@ SequenceMatch matched(const Imported& imported, StageContext& context) {
   StepAids aids(matching, context);
   SequenceParams params = settings.sequence;
   params.odometry_known = imported.pose_source != "none";
+  if (!params.odometry_known) params.odometry = unknown_odometry;
   const std::vector<Pose> poses = given_poses(imported);
   if (settings.match_against == "metascan")
     return match_to_metascan(poses, matching.metascan_matcher(), params, context.progress,
