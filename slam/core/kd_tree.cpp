@@ -414,8 +414,13 @@ void KdTree::k_nearest(const Eigen::Vector3f& query, std::size_t k, std::vector<
     KdSearch::Distances squared;
     search.distances(leaf, squared);
     const auto& indices = search.bucket_of(leaf).index;
+    std::uint32_t near = 0;  // a bit for each place
     for (std::size_t i = 0; i < squared.size(); ++i)
-      if (squared[i] <= bound) insert({indices[i], squared[i]});
+      near |= static_cast<std::uint32_t>(squared[i] <= bound) << i;
+    for (; near != 0; near &= near - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(near));
+      insert({indices[i], squared[i]});
+    }
   };
   search.descend(1, visit, [&] { return bound; });
 }

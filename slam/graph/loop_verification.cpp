@@ -16,6 +16,8 @@ namespace {
 constexpr double gates_of_one_start = 2;
 /// Other starts lie so many standard deviations along the direction the path knows least.
 constexpr double start_deviation = 1.5;
+/// With less than so much of the overlap that is needed, other starts are not tried.
+constexpr double hopeless = 0.5;
 /// Matches that end nearer to each other than this are one place.
 constexpr double same_place = 0.2;  // m
 const double same_heading = radians(3);
@@ -44,8 +46,10 @@ std::vector<Pose> starts(const LoopCandidate& candidate, const LoopParams& param
 Alignment best_match(const LoopCandidate& candidate, const GatedPairMatcher& matcher,
                      const LoopParams& params, std::string& reason) {
   std::vector<Alignment> matches;
-  for (const Pose& start : starts(candidate, params))
+  for (const Pose& start : starts(candidate, params)) {
     matches.push_back(matcher(candidate.from, candidate.to, start, candidate.gate(params)));
+    if (matches.front().overlap < hopeless * params.min_overlap) break;
+  }
   Alignment best = matches.front();
   for (const Alignment& match : matches)
     if (usable(match, params) && (!usable(best, params) || match.overlap > best.overlap))

@@ -54,6 +54,8 @@ std::vector<Surfel> surfels_of(const MatchingScan& scan, std::uint32_t number, d
                       .point = plane.mean,
                       .normal = plane.normal,
                       .tilt_variance = plane.tilt_variance,
+                      // An even disc of n points and this reach deviates by reach / 2 sideways.
+                      .offset_variance = plane.tilt_variance * plane.reach * plane.reach / 4,
                       .held_out = held_out});
   }
   return result;

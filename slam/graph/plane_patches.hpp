@@ -19,6 +19,7 @@ struct Surfel {
   Eigen::Vector3f point = Eigen::Vector3f::Zero();   ///< m, scanner frame, mean of its points
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit, towards the scanner
   float tilt_variance = 0;                           ///< rad^2, of the normal
+  float offset_variance = 0;                         ///< m^2, of the point along the normal
   bool held_out = false;                             ///< judges what the others make
 };
 

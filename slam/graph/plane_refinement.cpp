@@ -26,6 +26,8 @@ constexpr double same_patches = 0.2;
 constexpr int iterations_of_weights = 4;
 /// Standard errors; a smaller gain may be chance.
 constexpr double least_gain = 2;
+/// Distances may be so many times what the noise of the surfels makes before they count as bends.
+constexpr double usual_excess = 1.5;
 /// Enough to know the median.
 constexpr std::size_t one_of_so_many = 4;
 
@@ -152,7 +154,10 @@ class Refinement {
       if (before[p].count == 0 || after[p].count == 0) before[p] = after[p] = {};
     result.thickness_before = mean(before);
     result.thickness_after = mean(after);
-    result.improved = gain(before, after) > least_gain;
+    // Distances far above what noise makes are bends of the scans: patches are not independent.
+    const double bends =
+        std::max(1.0, result.thickness_after / (usual_excess * expected_distance()));
+    result.improved = gain(before, after) > least_gain * bends;
   }
 
   const std::vector<Pose>& poses() const { return poses_; }
@@ -167,6 +172,15 @@ class Refinement {
   double moved(std::size_t scan) const { return moved(scan, prior_[scan]); }
 
  private:
+  /// m, mean distance of surfels from their planes that their noise makes.
+  double expected_distance() const {
+    constexpr double mean_per_deviation = 0.7979;  // of a normal distribution: sqrt(2 / pi)
+    double sum = 0;
+    for (const Surfel& surfel : surfels_) sum += std::sqrt(surfel.offset_variance);
+    return mean_per_deviation * sum /
+           static_cast<double>(std::max<std::size_t>(surfels_.size(), 1));
+  }
+
   double farthest(const std::vector<Pose>& from) const {
     double result = 0;
     for (std::size_t i = 0; i < poses_.size(); ++i) result = std::max(result, moved(i, from[i]));

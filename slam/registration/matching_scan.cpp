@@ -1,15 +1,16 @@
 #include "slam/registration/matching_scan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
 
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
-#include "slam/core/plane.hpp"
 #include "slam/core/robust.hpp"
 #include "slam/registration/reduction.hpp"
 
@@ -57,37 +58,61 @@ std::vector<std::uint32_t> shuffled_by_place(std::span<const Eigen::Vector3f> po
   return result;
 }
 
+/// Count, sum and sum of products of points relative to somewhere near them, as PointMoments but
+/// small enough to gather many of them fast.
+template <class Real>
+struct PatchSums {
+  Real count = 0;
+  std::array<Real, 3> sum = {};
+  std::array<Real, 6> products = {};  // xx xy xz yy yz zz
+
+  /// Adds the points of other sums, all moved by `shift`.
+  template <class Other>
+  void add(const PatchSums<Other>& other, const std::array<Real, 3>& shift) {
+    const Real n = other.count;
+    std::array<Real, 3> moved;  // half of what the shift adds to the products
+    for (std::size_t i = 0; i < 3; ++i) moved[i] = other.sum[i] + n * shift[i];
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = i; j < 3; ++j, ++k)
+        products[k] += other.products[k] + other.sum[i] * shift[j] + shift[i] * moved[j];
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += moved[i];
+    count += n;
+  }
+
+  Eigen::Vector3d centroid() const { return Eigen::Vector3d(sum[0], sum[1], sum[2]) / count; }
+  Eigen::Matrix3d covariance() const {
+    const Eigen::Vector3d mean = centroid();
+    const auto& p = products;
+    Eigen::Matrix3d squares;
+    squares << p[0], p[1], p[2], p[1], p[3], p[4], p[2], p[4], p[5];
+    return squares / count - mean * mean.transpose();
+  }
+};
+
 /// A choice of points, and for each the sums over the points that it stands for, relative to it.
 struct Choice {
   std::vector<Eigen::Vector3f> points;
-  std::vector<PointMoments> moments;
+  std::vector<PatchSums<float>> sums;
 };
 
 Choice choice_of(std::span<const Eigen::Vector3f> points, double voxel) {
+  const PatchSums<float> itself{.count = 1};
   Choice result;
   if (voxel == 0) {
     result.points.assign(points.begin(), points.end());
-    result.moments.resize(points.size());
-    for (PointMoments& m : result.moments) m.add(Eigen::Vector3d::Zero());
+    result.sums.assign(points.size(), itself);
     return result;
   }
   const VoxelGrid grid = voxel_grid(points, voxel);
   result.points.reserve(grid.representative.size());
   for (const std::uint32_t i : grid.representative) result.points.push_back(points[i]);
-  result.moments.resize(result.points.size());
+  result.sums.resize(result.points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::uint32_t v = grid.voxel_of_point[i];
-    result.moments[v].add((points[i] - result.points[v]).cast<double>());
+    const Eigen::Vector3f shift = points[i] - result.points[v];
+    result.sums[v].add(itself, {shift.x(), shift.y(), shift.z()});
   }
-  return result;
-}
-
-/// The sums of `moments` over points that are all moved by `shift`.
-PointMoments moved(const PointMoments& moments, const Eigen::Vector3d& shift) {
-  PointMoments result = moments;
-  const Eigen::Matrix3d mixed = moments.sum * shift.transpose();
-  result.squares += mixed + mixed.transpose() + moments.count * shift * shift.transpose();
-  result.sum += moments.count * shift;
   return result;
 }
 
@@ -97,26 +122,30 @@ std::optional<LocalPlane> plane_through(std::span<const Neighbour> neighbours,
                                         const Choice& choice) {
   if (neighbours.size() < 4) return std::nullopt;
   const Eigen::Vector3f origin = choice.points[neighbours.front().index];
-  PointMoments moments;
-  for (const Neighbour& n : neighbours)
-    moments += moved(choice.moments[n.index], (choice.points[n.index] - origin).cast<double>());
-  const std::optional<PlaneFit> fit = fit_plane(moments);
-  if (!fit) return std::nullopt;
-  const Eigen::Vector3d deviation = fit->variances.cwiseSqrt();
-  if (deviation[1] < least_width_by_length * deviation[2] ||
+  PatchSums<double> sums;
+  for (const Neighbour& n : neighbours) {
+    const Eigen::Vector3f shift = choice.points[n.index] - origin;
+    sums.add(choice.sums[n.index], {shift.x(), shift.y(), shift.z()});
+  }
+  // In closed form: good to a hundredth of a millimetre, and there are many of them.
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(sums.covariance());
+  const Eigen::Vector3d variances = solver.eigenvalues().cwiseMax(0);
+  const Eigen::Vector3d deviation = variances.cwiseSqrt();
+  if (!(deviation[2] > 0) || deviation[1] < least_width_by_length * deviation[2] ||
       deviation[0] > most_thickness_by_width * deviation[1])
     return std::nullopt;
-  const Eigen::Vector3d mean = fit->centroid + origin.cast<double>();
-  const double side = fit->plane.normal.dot(mean) > 0 ? -1 : 1;
+  const Eigen::Vector3d mean = sums.centroid() + origin.cast<double>();
+  const Eigen::Vector3d normal = solver.eigenvectors().col(0);
+  const double side = normal.dot(mean) > 0 ? -1 : 1;
   LocalPlane plane;
   plane.mean = mean.cast<float>();
-  plane.normal = (side * fit->plane.normal).cast<float>();
+  plane.normal = (side * normal).cast<float>();
   // Three of the degrees of freedom went into the plane.
-  plane.thickness =
-      static_cast<float>(deviation[0] * std::sqrt(moments.count / (moments.count - 3)));
+  plane.thickness = static_cast<float>(deviation[0] * std::sqrt(sums.count / (sums.count - 3)));
   plane.reach = static_cast<float>(2 * deviation[2]);  // an even disc of radius r deviates by r / 2
   plane.tilt_variance =
-      static_cast<float>(plane.thickness * plane.thickness / (moments.count * fit->variances[1]));
+      static_cast<float>(plane.thickness * plane.thickness / (sums.count * variances[1]));
   return plane;
 }
 

@@ -17,9 +17,9 @@
 #include "slam/graph/place_search.hpp"
 #include "slam/graph/scan_descriptor.hpp"
 #include "slam/graph/scan_plan.hpp"
-#include "slam/registration/see_through.hpp"
 #include "slam/registration/icp.hpp"
 #include "slam/registration/overlap.hpp"
+#include "slam/registration/see_through.hpp"
 #include "tests/benchmarks/place_scenes.hpp"
 #include "tests/slam/registration/simulated_room.hpp"
 

@@ -60,7 +60,8 @@ inline BuildingPlan plan_of(std::vector<Entrance>& entrances) {
 }
 
 /// Round the ring counter-clockwise, into each room on the way, and a little past the start.
-inline std::vector<Pose> path(const std::vector<Entrance>& entrances, double step) {
+inline std::vector<Pose> path(const std::vector<Entrance>& entrances, double step,
+                              std::size_t visits) {
   std::vector<Pose> poses;
   double x = corridor / 2, y = corridor / 2, heading = 0;
   const auto stop = [&](double to_x, double to_y, double degrees_of_heading) {
@@ -89,12 +90,12 @@ inline std::vector<Pose> path(const std::vector<Entrance>& entrances, double ste
     for (int k = 0; k < 3; ++k) stop(x, y, heading + 30);
   };
   stop(x, y, 0);
-  for (int k = 0; k < 4; ++k) visit(entrances[static_cast<std::size_t>(k)], 0);
+  for (std::size_t k = 0; k < std::min<std::size_t>(visits, 4); ++k) visit(entrances[k], 0);
   drive(length - corridor / 2, corridor / 2, 0);
   turn_left();
   drive(length - corridor / 2, width - corridor / 2, 90);
   turn_left();
-  for (int k = 7; k >= 4; --k) visit(entrances[static_cast<std::size_t>(k)], 180);
+  for (std::size_t k = std::min<std::size_t>(visits, 8); k > 4; --k) visit(entrances[k - 1], 180);
   drive(corridor / 2, width - corridor / 2, 180);
   turn_left();
   drive(corridor / 2, corridor / 2, 270);
@@ -111,11 +112,11 @@ struct RingBuilding {
   std::vector<Pose> poses;
 };
 
-/// `step`: m, between stops in the corridor.
-inline RingBuilding ring_building(double step = 2.2) {
+/// `step`: m, between stops in the corridor; `visits`: so many rooms are entered.
+inline RingBuilding ring_building(double step = 2.2, std::size_t visits = 8) {
   std::vector<ring::Entrance> entrances;
   Building building = built(ring::plan_of(entrances));
-  return {std::move(building), ring::path(entrances, step)};
+  return {std::move(building), ring::path(entrances, step, visits)};
 }
 
 }  // namespace planum::testing

@@ -1,8 +1,8 @@
 // A building whose corridor is a ring, rooms entered and left, odometry that is off by metres when
 // the ring closes: scans registered, loops closed, relaxed. Time by step and error of the path.
 //
-// usage: sequence_benchmark [SEED [DRIFT [STEP]]]   DRIFT: in multiples of the usual one; STEP: m,
-// between stops in the corridor
+// usage: sequence_benchmark [SEED [DRIFT [STEP [VISITS]]]]   DRIFT: in multiples of the usual
+// one; STEP: m, between stops in the corridor; VISITS: rooms that are entered
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -59,7 +59,8 @@ int main(int argc, char** argv) {
   const std::uint64_t seed = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1;
   const double drift = argc > 2 ? std::strtod(argv[2], nullptr) : 1;
   const auto [building, truth] =
-      testing::ring_building(argc > 3 ? std::strtod(argv[3], nullptr) : 2.2);
+      testing::ring_building(argc > 3 ? std::strtod(argv[3], nullptr) : 2.2,
+                             argc > 4 ? std::strtoull(argv[4], nullptr, 10) : 8);
   const auto simulated = simulate_scans(building.mesh.mesh, truth, {.seed = seed});
   std::vector<Cloud> clouds;
   std::size_t points = 0;

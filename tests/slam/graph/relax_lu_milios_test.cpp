@@ -210,8 +210,7 @@ TEST(RelaxLuMilios, RefusesBadInput) {
 TEST(ScanLink, KnowsTheDifferenceOfTwoSmallMotions) {
   const Walk& w = walk();
   std::vector<std::vector<std::uint32_t>> selections;
-  for (const MatchingScan& scan : w.scans)
-    selections.push_back(scan.selection(5000));
+  for (const MatchingScan& scan : w.scans) selections.push_back(scan.selection(5000));
   ScanLink link({0, 1}, w.scans, selections);
   std::mt19937 random(7);
   for (int draw = 0; draw < 5; ++draw) {

@@ -57,8 +57,9 @@ TEST_F(Evaluate, SaysHowGoodAMapIs) {
     EXPECT_LT(loop["after"]["translation_m"], 0.05);
     EXPECT_GE(loop["odometry"]["deviations"], 0);
   }
-  if (figures["double_walls"]["after"]["patches"] > 0)
+  if (figures["double_walls"]["after"]["patches"] > 0) {
     EXPECT_LT(figures["double_walls"]["after"]["median_m"], 0.02);
+  }
 }
 
 TEST_F(Evaluate, PrintsTablesForPeople) {
