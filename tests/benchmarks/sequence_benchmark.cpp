@@ -1,18 +1,21 @@
 // A building whose corridor is a ring, rooms entered and left, odometry that is off by metres when
 // the ring closes: scans registered, loops closed, relaxed. Time by step and error of the path.
 //
-// usage: sequence_benchmark [SEED [DRIFT [STEP [VISITS]]]]   DRIFT: in multiples of the usual
-// one; STEP: m, between stops in the corridor; VISITS: rooms that are entered
+// usage: sequence_benchmark [SEED [DRIFT [STEP [VISITS [FALSE]]]]]   DRIFT: in multiples of the
+// usual one; STEP: m, between stops in the corridor; VISITS: rooms that are entered; FALSE: so many
+// false loops for each right one
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
+#include <random>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "slam/core/parallel.hpp"
 #include "slam/evaluation/trajectory_error.hpp"
+#include "slam/graph/graph_optimization.hpp"
 #include "slam/graph/loops.hpp"
 #include "slam/graph/plane_refinement.hpp"
 #include "slam/graph/pose_graph.hpp"
@@ -53,10 +56,41 @@ void print_error(const char* what, const std::vector<Pose>& poses, const std::ve
              error.ape_rotation.mean);
 }
 
+std::size_t accepted_loops(const PoseGraph& graph) {
+  std::size_t count = 0;
+  for (const Edge& edge : graph.edges) count += edge.kind == EdgeKind::loop && edge.accepted;
+  return count;
+}
+
+/// So many false loops for each right one: random pairs of scans that claim to be a metre apart at
+/// most, as sure of it as the right ones.
+void add_false_loops(PoseGraph& graph, double share, std::uint64_t seed) {
+  const auto count = static_cast<std::size_t>(share * static_cast<double>(accepted_loops(graph)));
+  Matrix6d information = Matrix6d::Zero();
+  for (const Edge& edge : graph.edges)
+    if (edge.kind == EdgeKind::loop && edge.accepted) information = edge.information;
+  std::mt19937_64 random(seed);
+  std::uniform_int_distribution<std::size_t> scan(0, graph.poses.size() - 1);
+  std::uniform_real_distribution<double> shift(-1, 1), turn(-pi, pi);
+  for (std::size_t k = 0; k < count;) {
+    const std::size_t one = scan(random), other = scan(random);
+    const auto [from, to] = std::minmax(one, other);
+    if (to < from + 10) continue;
+    graph.edges.push_back(
+        {.from = from,
+         .to = to,
+         .from_from_to = pose_from_xyz_ypr({shift(random), shift(random), 0}, turn(random), 0, 0),
+         .information = information,
+         .kind = EdgeKind::loop});
+    ++k;
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::uint64_t seed = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1;
+  const double false_share = argc > 5 ? std::strtod(argv[5], nullptr) : 0;
   const double drift = argc > 2 ? std::strtod(argv[2], nullptr) : 1;
   const auto [building, truth] =
       testing::ring_building(argc > 3 ? std::strtod(argv[3], nullptr) : 2.2,
@@ -96,6 +130,20 @@ int main(int argc, char** argv) {
   const std::vector<Edge> loops = find_loops(scans, graph, icp_gated_matcher(scans));
   graph.edges.insert(graph.edges.end(), loops.begin(), loops.end());
   const Time closed = now();
+  if (false_share > 0) {
+    const std::size_t accepted_before = accepted_loops(graph), first = graph.edges.size();
+    add_false_loops(graph, false_share, seed);
+    const auto counts = optimize(graph, {.covariances = false}).quality.counts;
+    std::size_t kept = 0, dropped = 0;
+    for (std::size_t k = 0; k < graph.edges.size(); ++k) {
+      Edge& edge = graph.edges[k];
+      if (k >= first) kept += counts[k];
+      if (k < first && edge.accepted) dropped += !counts[k];
+      edge.accepted = counts[k];
+    }
+    fmt::print("{} false loops among {}: {} kept, {} right ones dropped\n",
+               graph.edges.size() - first, accepted_before, kept, dropped);
+  }
   const GraphResult result = relax_lu_milios(graph, scans);
   const Time relaxed = now();
   print_error("relaxed", result.graph.poses, truth);

@@ -80,6 +80,7 @@ void add_commands(CLI::App& app) {
   add_config_command(app);
   add_evaluate_command(app);
   add_view_command(app);
+  add_register_command(app);
   add_optimize_command(app);
   add_polygonize_command(app);
   add_simulate_command(app);

@@ -15,6 +15,7 @@ void add_evaluate_command(CLI::App& app);
 void add_init_command(CLI::App& app);
 void add_optimize_command(CLI::App& app);
 void add_polygonize_command(CLI::App& app);
+void add_register_command(CLI::App& app);
 void add_run_command(CLI::App& app);
 void add_simulate_command(CLI::App& app);
 void add_status_command(CLI::App& app);

@@ -1,3 +1,5 @@
+#include <optional>
+
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
@@ -5,13 +7,12 @@
 #include "slam/io/input_file.hpp"
 #include "slam/io/obj.hpp"
 #include "slam/io/ply.hpp"
-#include "slam/io/slices.hpp"
 #include "slam/io/tum.hpp"
 #include "slam/io/uos.hpp"
 #include "slam/io/xyz.hpp"
-#include "slam/sensor/tilted_laser.hpp"
 #include "tools/planum/cli11.hpp"
 #include "tools/planum/commands.hpp"
+#include "tools/planum/scan_file.hpp"
 
 namespace planum {
 namespace {
@@ -67,22 +68,12 @@ void convert_trajectory(const fs::path& in, const fs::path& out) {
   write_tum(out, trajectory);
 }
 
-Cloud read_points(const fs::path& in, const fs::path& out) {
-  const fs::path ending = in.extension();
-  if (ending == ".slices" || (ending == ".txt" && looks_like_slices(in))) {
-    return points_from_slices(read_slices(in), {.min_range = 0, .max_range = 0}).cloud;
-  }
-  if (ending == ".3d") return read_uos_scan(in);
-  if (ending == ".xyz") return read_xyz(in);
-  if (ending == ".ply") return read_ply_cloud(in);
-  throw_unknown(in, out);
-}
-
 void convert_points(const fs::path& in, const fs::path& out) {
-  const Cloud cloud = read_points(in, out);
-  if (out.extension() == ".3d") return write_uos_scan(out, cloud);
-  if (out.extension() == ".xyz") return write_xyz(out, cloud);
-  if (out.extension() == ".ply") return write_ply(out, cloud);
+  const std::optional<Cloud> cloud = read_points_file(in);
+  if (!cloud) throw_unknown(in, out);
+  if (out.extension() == ".3d") return write_uos_scan(out, *cloud);
+  if (out.extension() == ".xyz") return write_xyz(out, *cloud);
+  if (out.extension() == ".ply") return write_ply(out, *cloud);
   throw_unknown(in, out);
 }
 
