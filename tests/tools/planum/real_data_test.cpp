@@ -94,5 +94,22 @@ TEST(RealData, FindsTheClassroomOfThePaper) {
   EXPECT_NEAR(room["height_m"], expected["height"], 0.04);
 }
 
+TEST(RealData, FindsTheWayThroughTheClassroomWithoutAnyPoses) {
+  PLANUM_SHARED_DATASET(data, "classroom");
+  const TemporaryDirectory directory;
+  const Program planum(directory.path());
+  ASSERT_EQ(planum({"init", data.string(), "--format", "slices"}).exit_code, 0);
+  const std::string no_poses = "scans.poses=\"none\"";
+  const Outcome run = planum({"run", "--until", "cloud", "--set", no_poses});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Outcome evaluated =
+      planum({"evaluate", "--set", no_poses, "--truth", (data / "truth.tum").string(), "--json"});
+  ASSERT_EQ(evaluated.exit_code, 0) << evaluated.err;
+  const auto figures = nlohmann::json::parse(evaluated.out);
+  EXPECT_EQ(figures["map"]["poses"], 12);
+  EXPECT_LT(figures["map"]["ape_translation_m"]["rmse"], 0.01);
+  EXPECT_LT(figures["map"]["ape_rotation_deg"]["max"], 0.1);
+}
+
 }  // namespace
 }  // namespace planum::testing

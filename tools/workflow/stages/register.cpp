@@ -117,7 +117,7 @@ void work(StageContext& context) {
     if (!have_poses) {
       context.record.warnings.insert(
           context.record.warnings.begin(),
-          "the scans have no poses: each one is searched for where the one before was");
+          "the scans have no poses: each one is looked for by itself, beginning at the one before");
     }
   }
   write_result(context.result, match);
