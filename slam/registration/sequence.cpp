@@ -45,17 +45,18 @@ class Sequence {
     const std::size_t target = earlier.size() - 1, source = earlier.size();
     SequenceStep step{.alignment = first_(earlier, guess)};
     step.reason = distrust(target, guess, step.alignment, params_.min_overlap);
+    // A match of little overlap may be a wrong one that looks right: what has more is preferred.
+    bool sure = step.reason.empty() && step.alignment.overlap >= params_.second_min_overlap;
     const auto attempt = [&](const std::optional<Alignment>& alignment) {
       if (!alignment || !distrust(target, guess, *alignment, params_.second_min_overlap).empty())
         return;
       step.alignment = *alignment;
       step.reason.clear();
+      sure = true;
     };
-    if (!step.reason.empty() && aids_.second)
-      attempt(aids_.second(target, source, guess, params_.second_gate));
-    if (!step.reason.empty() && aids_.metascan)
-      attempt(aids_.metascan(earlier, guess, params_.second_gate));
-    if (!step.reason.empty() && aids_.locate) attempt(aids_.locate(target, source));
+    if (!sure && aids_.second) attempt(aids_.second(target, source, guess, params_.second_gate));
+    if (!sure && aids_.metascan) attempt(aids_.metascan(earlier, guess, params_.second_gate));
+    if (!sure && aids_.locate) attempt(aids_.locate(target, source));
     step.matched = step.reason.empty();
     if (!step.matched) step.alignment = {.target_from_source = guess};
     step.odometry_information = odometry_information(guess, params_.odometry);

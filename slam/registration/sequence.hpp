@@ -34,14 +34,15 @@ struct SequenceParams {
   double max_turn = radians(45);  ///< rad, the same
   bool odometry_known = true;     ///< false: guesses are mere beginnings, matches may end anywhere
   double second_gate = 2.5;       ///< m, first gate of the second attempt at a step
-  double second_min_overlap = 0.3;              ///< of a match of a second or later attempt
+  double second_min_overlap = 0.3;  ///< of a match of a second or later attempt, which is made
+                                    ///< where the first has less, too
   double max_contradicted = most_contradicted;  ///< share of the surfaces of one scan that rays of
                                                 ///< the other go through
   OdometryNoise odometry = {};
 };
 
-/// What else a sequence can do for a step whose match cannot be trusted, one after another; those
-/// not given are left out.
+/// What else a sequence can do for a step whose match cannot be trusted or has little overlap, one
+/// after another; those not given are left out.
 struct SequenceAids {
   GatedPairMatcher second;   ///< with a wide gate
   MetascanMatcher metascan;  ///< with all earlier scans that overlap

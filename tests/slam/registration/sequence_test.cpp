@@ -200,6 +200,28 @@ TEST(Sequence, TriesAgainInOrderWhereAMatchCannotBeTrusted) {
   EXPECT_EQ(shift_with(aids), 0.2);
 }
 
+TEST(Sequence, PrefersAMatchOfMoreOverlapToOneOfLittle) {
+  const std::vector<Pose> odometry(2, Pose::Identity());
+  const PairMatcher thin = [](std::size_t, std::size_t, const Pose& guess) {
+    Alignment alignment = good(guess, 0.1);
+    alignment.overlap = 0.2;
+    return alignment;
+  };
+  const auto shift_with = [&](double overlap) {
+    SequenceAids aids;
+    aids.metascan = [=](std::span<const Pose>, const Pose& guess, double) {
+      Alignment alignment = good(guess, 0.2);
+      alignment.overlap = overlap;
+      return alignment;
+    };
+    const SequenceStep step = match_in_order(odometry, thin, {}, {}, aids).steps.front();
+    EXPECT_TRUE(step.matched) << step.reason;
+    return step.alignment.target_from_source.translation().x();
+  };
+  EXPECT_EQ(shift_with(0.5), 0.2);
+  EXPECT_EQ(shift_with(0.25), 0.1) << "it is no better";
+}
+
 TEST(Sequence, DoesNotBelieveAMatchWhoseRaysGoThroughSurfaces) {
   const std::vector<Pose> odometry(2, Pose::Identity());
   const PairMatcher matcher = [](std::size_t, std::size_t, const Pose& guess) {

@@ -72,8 +72,8 @@ TEST(RealData, FindsTheClassroomOfThePaper) {
   const TemporaryDirectory directory;
   const auto report = report_of(mapped(data, "slices", directory / "classroom"));
   const auto truth = nlohmann::json::parse(file_text(data / "dimensions.json"));
-  EXPECT_LT(report["evaluation"]["ate_rmse_m"], 0.02);
-  EXPECT_LT(report["evaluation"]["rot_mean_deg"], 0.3);
+  EXPECT_LT(report["evaluation"]["ate_rmse_m"], 0.002);
+  EXPECT_LT(report["evaluation"]["rot_mean_deg"], 0.05);
   const auto& expected = truth["rooms"][0];
   double best = 1e9;
   nlohmann::json room;

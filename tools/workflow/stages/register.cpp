@@ -128,7 +128,7 @@ void work(StageContext& context) {
 
 Stage register_stage() {
   return {.name = "register",
-          .version = 3,
+          .version = 4,
           .unit = "pairs",
           .needs = {"import"},
           .parameters = {"registration"},
