@@ -62,12 +62,14 @@ class KdTree {
   void within(const Eigen::Vector3f& query, float radius, std::vector<Neighbour>& result) const;
 
  private:
+  static constexpr std::size_t bucket_size = 16;
+
   struct Box {
     std::array<float, 4> low, high;  ///< x y z and a zero, four at a time for the processor
   };
   struct Bucket {
-    std::array<float, 16> x, y, z;        ///< beyond the last point: infinity
-    std::array<std::uint32_t, 16> index;  ///< where a point was in the input
+    std::array<float, bucket_size> x, y, z;        ///< beyond the last point: infinity
+    std::array<std::uint32_t, bucket_size> index;  ///< where a point was in the input
   };
   friend class KdSearch;
   friend class KdBuild;

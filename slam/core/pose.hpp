@@ -14,6 +14,13 @@ inline constexpr double pi = 3.14159265358979323846;
 constexpr double radians(double degrees) { return degrees * (pi / 180.0); }
 constexpr double degrees(double radians) { return radians * (180.0 / pi); }
 
+/// A value for each of the three translations, and one for each of the three rotations.
+inline Vector6d both_parts(double translation, double rotation) {
+  Vector6d result;
+  result << Eigen::Vector3d::Constant(translation), Eigen::Vector3d::Constant(rotation);
+  return result;
+}
+
 /// The matrix of the cross product: skew(a) * b == a x b.
 Eigen::Matrix3d skew(const Eigen::Vector3d& a);
 

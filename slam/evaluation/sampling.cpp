@@ -5,17 +5,15 @@
 
 #include <Eigen/Geometry>
 
+#include "slam/core/hash.hpp"
 #include "slam/evaluation/mesh_corners.hpp"
 
 namespace planum {
 namespace {
 
-/// In [0, 1), as good as random: the finalizer of splitmix64 (Steele, Lea, Flood, OOPSLA 2014).
+/// In [0, 1), as good as random.
 double hashed(std::uint64_t i) {
-  i += 0x9e3779b97f4a7c15;
-  i = (i ^ (i >> 30)) * 0xbf58476d1ce4e5b9;
-  i = (i ^ (i >> 27)) * 0x94d049bb133111eb;
-  return static_cast<double>((i ^ (i >> 31)) >> 11) * 0x1p-53;
+  return static_cast<double>(mixed(i + 0x9e3779b97f4a7c15) >> 11) * 0x1p-53;
 }
 
 }  // namespace

@@ -67,10 +67,7 @@ LinkEquation edge_equation(const Edge& edge, const Matrix6d& information,
 
 Vector6d gentle_damping() {
   constexpr double translation = 10, rotation = 1;
-  Vector6d damping;
-  damping << Eigen::Vector3d::Constant(1 / (translation * translation)),
-      Eigen::Vector3d::Constant(1 / (rotation * rotation));
-  return damping;
+  return both_parts(1 / (translation * translation), 1 / (rotation * rotation));
 }
 
 EdgeRelaxation relax_edges(const PoseGraph& graph) {

@@ -9,13 +9,12 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/graph/path_covariance.hpp"
 
 namespace planum {
 namespace {
 
 constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-/// m; how much a rotation counts when ways are compared.
-constexpr double lever = 5;
 /// m^2; an edge whose information is singular says this little.
 constexpr double unsure = 1e4;
 
@@ -27,9 +26,7 @@ struct Way {
 double length_of(const Edge& edge) {
   const Eigen::LLT<Matrix6d> factor(edge.information);
   if (factor.info() != Eigen::Success) return unsure;
-  const Matrix6d covariance = factor.solve(Matrix6d::Identity());
-  const double length =
-      covariance.diagonal().head<3>().sum() + lever * lever * covariance.diagonal().tail<3>().sum();
+  const double length = uncertainty(factor.solve(Matrix6d::Identity()));
   return std::isfinite(length) ? std::min(length, unsure) : unsure;
 }
 

@@ -32,9 +32,8 @@ std::vector<std::size_t> parts_of(const PoseGraph& graph) {
 EdgeResidual edge_residual(const Edge& edge, const std::vector<Pose>& poses,
                            const EdgeNoise& noise) {
   const Vector6d error = edge_error(edge, poses);
-  Vector6d variances;
-  variances << Eigen::Vector3d::Constant(noise.translation * noise.translation),
-      Eigen::Vector3d::Constant(noise.rotation * noise.rotation);
+  const Vector6d variances =
+      both_parts(noise.translation * noise.translation, noise.rotation * noise.rotation);
   // (I^-1 + N)^-1 = (1 + I N)^-1 I, which exists where I^-1 does not.
   const Matrix6d mixed = Matrix6d::Identity() + edge.information * variances.asDiagonal();
   const double squared = error.dot(mixed.partialPivLu().solve(edge.information * error));

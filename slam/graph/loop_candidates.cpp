@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <numeric>
 #include <optional>
 
@@ -16,13 +17,6 @@ namespace {
 
 /// A gate reaches this many standard deviations of the guess.
 constexpr double gate_per_deviation = 3;
-
-Matrix6d isotropic(double translation, double rotation) {
-  Vector6d variance;
-  variance << Eigen::Vector3d::Constant(translation * translation),
-      Eigen::Vector3d::Constant(rotation * rotation);
-  return variance.asDiagonal();
-}
 
 std::optional<LoopCandidate> considered(std::span<const MatchingScan> scans, LoopCandidate pair,
                                         const WorthATry& worth_a_try, const LoopParams& params) {
@@ -65,22 +59,27 @@ double placed_within(const Matrix6d& covariance, double radius) {
 }
 
 double LoopCandidate::gate(const LoopParams& params) const {
-  return std::clamp(gate_per_deviation * std::sqrt(covariance.diagonal().head<3>().maxCoeff()),
-                    params.least_gate, params.most_gate);
+  return std::clamp(gate_per_deviation * placed_within(covariance, 0), params.least_gate,
+                    params.most_gate);
 }
 
 Matrix6d step_noise(const LoopParams& params) {
-  return isotropic(params.step_translation, params.step_rotation);
+  return both_parts(params.step_translation * params.step_translation,
+                    params.step_rotation * params.step_rotation)
+      .asDiagonal();
 }
 
-Matrix6d unknown_pose(const LoopParams& params) { return isotropic(params.most_gate, pi / 4); }
+Matrix6d unknown_pose(const LoopParams& params) {
+  return both_parts(params.most_gate * params.most_gate, (pi / 4) * (pi / 4)).asDiagonal();
+}
 
 std::vector<LoopCandidate> loop_candidates(std::span<const MatchingScan> scans,
                                            const PoseGraph& graph, const WorthATry& worth_a_try,
                                            std::size_t per_scan, const LoopParams& params) {
+  const PathCovariances paths(graph, step_noise(params));
   std::vector<std::vector<LoopCandidate>> of_scan(scans.size());
   parallel_for(scans.size(), 1, [&](std::size_t from, std::size_t) {
-    const auto covariances = path_covariances(graph, from, step_noise(params));
+    const auto covariances = paths.from(from);
     for (std::size_t to = from + 2; to < scans.size(); ++to) {
       const LoopCandidate pair{.from = from,
                                .to = to,
@@ -99,20 +98,25 @@ std::vector<LoopCandidate> candidates_by_appearance(std::span<const MatchingScan
                                                     const PoseGraph& graph,
                                                     const LoopParams& params,
                                                     const Progress& progress) {
-  std::vector<std::vector<Matrix6d>> covariances(scans.size());
-  std::vector<std::uint8_t> open(scans.size(), 0);
+  const PathCovariances paths(graph, step_noise(params));
+  const auto is_open = [&](const std::optional<Matrix6d>& covariance) {
+    return placed_within(covariance.value_or(unknown_pose(params)), 0) >= params.most_gate;
+  };
+  std::vector<std::uint8_t> has_open(scans.size(), 0);
   parallel_for(scans.size(), 1, [&](std::size_t from, std::size_t) {
-    for (const auto& known : path_covariances(graph, from, step_noise(params)))
-      covariances[from].push_back(known.value_or(unknown_pose(params)));
-    for (std::size_t to = from + 1; to < scans.size(); ++to)
-      if (placed_within(covariances[from][to], 0) >= params.most_gate) open[from] = 1;
+    const auto covariances = paths.from(from);
+    const auto later = covariances.begin() + static_cast<std::ptrdiff_t>(from) + 1;
+    has_open[from] = std::any_of(later, covariances.end(), is_open);
   });
-  if (std::find(open.begin(), open.end(), 1) == open.end()) return {};
+  if (std::find(has_open.begin(), has_open.end(), 1) == has_open.end()) return {};
+  std::map<std::size_t, std::vector<std::optional<Matrix6d>>> covariances_from;
   std::vector<LoopCandidate> result;
   for (const PlaceCandidate& place : find_places(scans, {}, progress)) {
-    const Matrix6d& covariance = covariances[place.target][place.source];
-    if (place.source < place.target + 2 || placed_within(covariance, 0) < params.most_gate)
-      continue;
+    if (!has_open[place.target] || place.source < place.target + 2) continue;
+    auto& covariances = covariances_from[place.target];
+    if (covariances.empty()) covariances = paths.from(place.target);
+    if (!is_open(covariances[place.source])) continue;
+    const Matrix6d covariance = covariances[place.source].value_or(unknown_pose(params));
     result.push_back({.from = place.target,
                       .to = place.source,
                       .guess = graph.poses[place.target].inverse() * graph.poses[place.source],

@@ -17,19 +17,19 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-using PathCovariances = std::vector<std::optional<Matrix6d>>;
+using Covariances = std::vector<std::optional<Matrix6d>>;
 
 /// Covariances along the paths from every scan where a loop begins or ends.
-std::map<std::size_t, PathCovariances> paths_from_ends(const PoseGraph& graph,
-                                                       std::span<const Edge> loops,
-                                                       const Matrix6d& step_noise) {
-  std::map<std::size_t, PathCovariances> result;
+std::map<std::size_t, Covariances> paths_from_ends(const PoseGraph& graph,
+                                                   std::span<const Edge> loops,
+                                                   const Matrix6d& step_noise) {
+  std::map<std::size_t, Covariances> result;
   for (const Edge& loop : loops) result[loop.from], result[loop.to];
   std::vector<std::size_t> starts;
   for (const auto& [start, covariances] : result) starts.push_back(start);
-  parallel_for(starts.size(), 1, [&](std::size_t k, std::size_t) {
-    result.at(starts[k]) = path_covariances(graph, starts[k], step_noise);
-  });
+  const PathCovariances paths(graph, step_noise);
+  parallel_for(starts.size(), 1,
+               [&](std::size_t k, std::size_t) { result.at(starts[k]) = paths.from(starts[k]); });
   return result;
 }
 
@@ -68,7 +68,7 @@ class Cycles {
   const PoseGraph& graph_;
   std::span<const Edge> loops_;
   std::span<const Matrix6d> covariances_;
-  std::map<std::size_t, PathCovariances> paths_;
+  std::map<std::size_t, Covariances> paths_;
 };
 
 /// Deviations of all pairs; infinite where they contradict.

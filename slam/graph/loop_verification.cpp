@@ -9,6 +9,8 @@
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
+#include "slam/registration/match_doubt.hpp"
+
 namespace planum {
 namespace {
 
@@ -25,7 +27,7 @@ const double same_heading = radians(3);
 constexpr double as_much_overlap = 0.9, as_little_rms = 1.25;
 
 bool usable(const Alignment& alignment, const LoopParams& params) {
-  return alignment.pairs > 0 && alignment.converged && alignment.overlap >= params.min_overlap;
+  return doubt_of_match(alignment, params.min_overlap).empty();
 }
 
 std::vector<Pose> starts(const LoopCandidate& candidate, const LoopParams& params) {
@@ -71,10 +73,8 @@ Alignment best_match(const LoopCandidate& candidate, const GatedPairMatcher& mat
 /// Empty if the match is to be believed.
 std::string doubt(const LoopCandidate& candidate, const Alignment& alignment,
                   const LoopEvidence& evidence, const LoopParams& params) {
-  if (alignment.pairs == 0) return "too few pairs";
-  if (alignment.overlap < params.min_overlap)
-    return fmt::format("overlap {:.2f} is below {:.2f}", alignment.overlap, params.min_overlap);
-  if (!alignment.converged) return "the match did not converge";
+  if (const std::string reason = doubt_of_match(alignment, params.min_overlap); !reason.empty())
+    return reason;
   if (evidence.usual_rms > 0 && alignment.rms > params.max_rms_ratio * evidence.usual_rms)
     return fmt::format("rms {:.4f} m is above {:.4f} m", alignment.rms,
                        params.max_rms_ratio * evidence.usual_rms);
@@ -83,13 +83,9 @@ std::string doubt(const LoopCandidate& candidate, const Alignment& alignment,
   if (off > params.max_deviation)
     return fmt::format("{:.2f} m and {:.1f} deg off the path, {:.1f} standard deviations",
                        correction.head<3>().norm(), degrees(correction.tail<3>().norm()), off);
-  if (!evidence.from || !evidence.to) return {};
-  const double contradicted =
-      check_free_space(*evidence.to, *evidence.from, alignment.target_from_source).contradicted();
-  if (contradicted > params.max_contradicted)
-    return fmt::format("rays of one scan go through {:.0f} % of the other's surfaces",
-                       100 * contradicted);
-  return {};
+  return doubt_of_rays(
+      check_free_space(evidence.to, evidence.from, alignment.target_from_source).contradicted(),
+      params.max_contradicted);
 }
 
 }  // namespace

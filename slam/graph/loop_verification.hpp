@@ -9,10 +9,8 @@ namespace planum {
 
 /// What a match is compared with.
 struct LoopEvidence {
-  double usual_rms = 0;  ///< m, of matches along the path; 0: unknown
-  /// Of the scans that a candidate joins.
-  const RangeView* from = nullptr;
-  const RangeView* to = nullptr;
+  double usual_rms = 0;        ///< m, of matches along the path; 0: unknown
+  const RangeView &from, &to;  ///< of the scans that a candidate joins
 };
 
 /// Matches a candidate, from several starts where the path leaves it open by more than the least

@@ -46,10 +46,10 @@ class LoopSearch {
   LoopSearch(std::span<const MatchingScan> scans, const PoseGraph& graph,
              const GatedPairMatcher& matcher, const LoopParams& params)
       : scans_(scans),
-        graph_(graph),
+        path_(graph),
         matcher_(matcher),
         params_(params),
-        path_(graph),
+        poses_(graph.poses),
         views_(scans.size()) {
     std::vector<double> rms;
     for (const Edge& edge : graph.edges)
@@ -97,12 +97,12 @@ class LoopSearch {
   void add_by_appearance(std::vector<LoopCandidate>& found, const Progress& progress) const {
     std::set<ScanPair> known;
     for (const LoopCandidate& pair : found) known.insert({pair.from, pair.to});
-    for (const LoopCandidate& pair : candidates_by_appearance(scans_, graph_, params_, progress))
+    for (const LoopCandidate& pair : candidates_by_appearance(scans_, path_, params_, progress))
       if (known.insert({pair.from, pair.to}).second) found.push_back(pair);
   }
 
   PoseGraph with_loops() const {
-    PoseGraph result = graph_;
+    PoseGraph result{poses_, path_.edges};
     for (const auto& [pair, loop] : loops_) result.edges.push_back(loop.edge);
     return result;
   }
@@ -119,9 +119,8 @@ class LoopSearch {
     parallel_for(
         found.size(), 1,
         [&](std::size_t k, std::size_t) {
-          const LoopEvidence evidence{.usual_rms = usual_rms_,
-                                      .from = &*views_[found[k].from],
-                                      .to = &*views_[found[k].to]};
+          const LoopEvidence evidence{
+              .usual_rms = usual_rms_, .from = *views_[found[k].from], .to = *views_[found[k].to]};
           edges[k] = verified_loop(found[k], matcher_, evidence, params_);
         },
         progress);
@@ -176,7 +175,7 @@ class LoopSearch {
         worst = &edge;
       }
       if (!worst) {
-        graph_.poses = poses;
+        poses_ = poses;
         return;
       }
       worst->accepted = false;
@@ -185,11 +184,11 @@ class LoopSearch {
   }
 
   std::span<const MatchingScan> scans_;
-  PoseGraph graph_;  ///< edges as they came; poses with the loops so far closed
+  const PoseGraph& path_;  ///< as it came
   const GatedPairMatcher& matcher_;
   const LoopParams& params_;
-  const PoseGraph path_;  ///< as it came
-  double usual_rms_ = 0;  ///< m
+  std::vector<Pose> poses_;  ///< with the loops so far closed
+  double usual_rms_ = 0;     ///< m
   std::map<ScanPair, Tried> loops_;
   std::vector<std::optional<RangeView>> views_;  ///< of the scans that were tried
 };

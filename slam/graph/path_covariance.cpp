@@ -5,38 +5,28 @@
 #include <Eigen/Cholesky>
 
 namespace planum {
-namespace {
-
-/// m; how much a rotation counts when paths are compared.
-constexpr double lever = 5;
-
 double uncertainty(const Matrix6d& covariance) {
+  constexpr double lever = 5;  // m
   return covariance.diagonal().head<3>().sum() +
          lever * lever * covariance.diagonal().tail<3>().sum();
 }
 
-struct Way {
-  std::size_t to;
-  Matrix6d covariance;      ///< of the way alone, in the frame where it ends
-  Matrix6d end_from_start;  ///< adjoint
-};
-
-}  // namespace
-
-std::vector<std::optional<Matrix6d>> path_covariances(const PoseGraph& graph, std::size_t start,
-                                                      const Matrix6d& step_noise) {
-  std::vector<std::vector<Way>> ways(graph.poses.size());
+PathCovariances::PathCovariances(const PoseGraph& graph, const Matrix6d& step_noise)
+    : ways_(graph.poses.size()) {
   for (const Edge& edge : graph.edges) {
     if (!edge.accepted) continue;
     const Eigen::LLT<Matrix6d> factor(edge.information);
     if (factor.info() != Eigen::Success) continue;
     const Matrix6d covariance = factor.solve(Matrix6d::Identity()) + step_noise;
     const Matrix6d from_from_to = adjoint(edge.from_from_to);
-    ways[edge.from].push_back({edge.to, covariance, adjoint(edge.from_from_to.inverse())});
-    ways[edge.to].push_back(
+    ways_[edge.from].push_back({edge.to, covariance, adjoint(edge.from_from_to.inverse())});
+    ways_[edge.to].push_back(
         {edge.from, from_from_to * covariance * from_from_to.transpose(), from_from_to});
   }
-  std::vector<std::optional<Matrix6d>> result(graph.poses.size()), best(graph.poses.size());
+}
+
+std::vector<std::optional<Matrix6d>> PathCovariances::from(std::size_t start) const {
+  std::vector<std::optional<Matrix6d>> result(ways_.size()), best(ways_.size());
   // Dijkstra; equal uncertainties in the order of the scans.
   using Entry = std::pair<double, std::size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
@@ -47,7 +37,7 @@ std::vector<std::optional<Matrix6d>> path_covariances(const PoseGraph& graph, st
     queue.pop();
     if (result[at]) continue;
     result[at] = best[at];
-    for (const Way& way : ways[at]) {
+    for (const Way& way : ways_[at]) {
       if (result[way.to]) continue;
       const Matrix6d there =
           way.end_from_start * *result[at] * way.end_from_start.transpose() + way.covariance;

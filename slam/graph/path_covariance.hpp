@@ -9,11 +9,27 @@
 
 namespace planum {
 
-/// Covariance of the error e of the relative pose start_from_scan * exp_se3(e) for every scan,
-/// along the path of accepted edges from `start` that knows it best; empty where no path leads.
-/// `step_noise` is added to the covariance of every edge. Edges whose information is singular are
-/// no part of a path.
-std::vector<std::optional<Matrix6d>> path_covariances(const PoseGraph& graph, std::size_t start,
-                                                      const Matrix6d& step_noise);
+/// m^2, one number for how unsure a covariance is, so that paths can be compared: a rotation of a
+/// radian counts as 5 m.
+double uncertainty(const Matrix6d& covariance);
+
+/// How well the paths of accepted edges through a graph know relative poses. `step_noise` is added
+/// to the covariance of every edge. Edges whose information is singular are no part of a path.
+class PathCovariances {
+ public:
+  PathCovariances(const PoseGraph& graph, const Matrix6d& step_noise);
+
+  /// Covariance of the error e of the relative pose start_from_scan * exp_se3(e) for every scan,
+  /// along the path from `start` that knows it best; empty where no path leads.
+  std::vector<std::optional<Matrix6d>> from(std::size_t start) const;
+
+ private:
+  struct Way {
+    std::size_t to;
+    Matrix6d covariance;      ///< of the way alone, in the frame where it ends
+    Matrix6d end_from_start;  ///< adjoint
+  };
+  std::vector<std::vector<Way>> ways_;  ///< from each scan
+};
 
 }  // namespace planum

@@ -169,9 +169,7 @@ void PlaneSystem::add_prior(const std::vector<Pose>& poses, const std::vector<Po
     const auto [i, j] = pairs_[k];
     // Half about either scan, so that their order does not matter.
     const double weight = stiffness * shared_[k] / 2;
-    Vector6d information;
-    information << Eigen::Vector3d::Constant(weight),
-        Eigen::Vector3d::Constant(weight * radius[i] * radius[j]);
+    const Vector6d information = both_parts(weight, weight * radius[i] * radius[j]);
     for (const auto& [from, to] : {std::pair(i, j), std::pair(j, i)}) {
       const Edge edge{.from = from, .to = to, .from_from_to = prior[from].inverse() * prior[to]};
       const LinkEquation equation = edge_equation(edge, Matrix6d(information.asDiagonal()), poses);

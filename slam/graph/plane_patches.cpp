@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "slam/core/hash.hpp"
 #include "slam/core/parallel.hpp"
 #include "slam/registration/icp.hpp"
 #include "slam/registration/reduction.hpp"
@@ -24,12 +25,6 @@ constexpr double block_spacings = 3;
 constexpr std::uint64_t one_in_so_many = 4;
 /// rad, how far the plane of a seed may be tilted against that of its patch.
 constexpr double seed_tilt = radians(1.5);
-
-std::uint64_t mixed(std::uint64_t x) {  // the finalizer of SplitMix64
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-  return x ^ (x >> 31);
-}
 
 std::uint64_t cell_key(const Eigen::Vector3i& cell) {
   std::uint64_t key = 0;

@@ -3,19 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wold-style-cast"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wpedantic"
-#pragma GCC diagnostic ignored "-Wunused-parameter"
 #include <flann/flann.hpp>
-#pragma GCC diagnostic pop
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
 #include "slam/graph/scan_plan.hpp"
-#include "slam/registration/pairing.hpp"
 
 namespace planum {
 namespace {

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
-#include "slam/registration/pairing.hpp"
 
 namespace planum {
 namespace {

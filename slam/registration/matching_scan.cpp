@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/core/hash.hpp"
 #include "slam/core/parallel.hpp"
 #include "slam/core/robust.hpp"
 #include "slam/registration/reduction.hpp"
@@ -40,10 +41,7 @@ std::uint64_t rank_of_place(const Eigen::Vector3f& point) {
   std::uint64_t hash = 0x9E3779B97F4A7C15u;
   for (const float coordinate : point) {
     hash ^= static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(coordinate * 20)));
-    // The finalizer of splitmix64 (Steele, Lea, Flood: OOPSLA 2014).
-    hash = (hash ^ (hash >> 30)) * 0xBF58476D1CE4E5B9u;
-    hash = (hash ^ (hash >> 27)) * 0x94D049BB133111EBu;
-    hash ^= hash >> 31;
+    hash = mixed(hash);
   }
   return hash;
 }

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/core/parallel.hpp"
 #include "slam/registration/icp.hpp"
-#include "slam/registration/pairing.hpp"
 
 namespace planum {
 namespace {
@@ -100,14 +100,6 @@ double Visibility::contradicted() const {
   return seen == 0 ? 0 : static_cast<double>(contradictions) / static_cast<double>(seen);
 }
 
-Visibility& Visibility::operator+=(const Visibility& other) {
-  contradictions += other.contradictions;
-  agreements += other.agreements;
-  occluded += other.occluded;
-  unseen += other.unseen;
-  return *this;
-}
-
 double FreeSpaceCheck::contradicted(std::size_t least_seen) const {
   double worst = 0;
   for (const Visibility& way : {source_from_target, target_from_source})
@@ -135,6 +127,13 @@ RangeView range_view(const MatchingScan& scan, const RangeViewParams& params) {
   for (const std::uint32_t i : scan.selection(params.samples))
     if (scan.planes[i].known()) view.samples.push_back({scan.smoothed(i), scan.planes[i].normal});
   return view;
+}
+
+std::vector<RangeView> range_views(std::span<const MatchingScan> scans) {
+  std::vector<RangeView> views(scans.size());
+  parallel_for(scans.size(), 1,
+               [&](std::size_t i, std::size_t) { views[i] = range_view(scans[i]); });
+  return views;
 }
 
 Visibility visibility(const RangeView& source, const RangeView& target,

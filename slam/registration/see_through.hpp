@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -37,6 +38,9 @@ struct RangeView {
 /// Throws Error if a parameter is out of range.
 RangeView range_view(const MatchingScan& scan, const RangeViewParams& params = {});
 
+/// Of many scans at once, with the parameters as they are.
+std::vector<RangeView> range_views(std::span<const MatchingScan> scans);
+
 /// How the surfaces of one scan look from the scanner of another.
 struct Visibility {
   std::size_t contradictions = 0;  ///< the other scan's rays go on behind them
@@ -46,7 +50,6 @@ struct Visibility {
 
   /// The share of contradictions among the surfaces that the other scan's rays came to; 0 if none.
   double contradicted() const;
-  Visibility& operator+=(const Visibility& other);
 };
 
 /// How the surfaces of `source` look from the scanner of `target`.

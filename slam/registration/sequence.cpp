@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/registration/match_doubt.hpp"
 
 namespace planum {
 namespace {
@@ -70,22 +71,15 @@ class Sequence {
                        double min_overlap) const {
     const Pose correction = guess.inverse() * alignment.target_from_source;
     const double shift = correction.translation().norm(), turn = rotation_angle(correction);
-    if (alignment.pairs == 0) return "too few pairs";
-    if (alignment.overlap < min_overlap)
-      return fmt::format("overlap {:.2f} is below {:.2f}", alignment.overlap, min_overlap);
-    if (!alignment.converged) return "the match did not converge";
+    if (std::string reason = doubt_of_match(alignment, min_overlap); !reason.empty()) return reason;
     if (params_.odometry_known && shift > params_.max_shift)
       return fmt::format("moved {:.2f} m, more than {:.2f} m", shift, params_.max_shift);
     if (params_.odometry_known && turn > params_.max_turn)
       return fmt::format("turned {:.1f} deg, more than {:.1f} deg", degrees(turn),
                          degrees(params_.max_turn));
-    const double contradicted =
-        aids_.contradicted ? aids_.contradicted(target, target + 1, alignment.target_from_source)
-                           : 0;
-    if (contradicted > params_.max_contradicted)
-      return fmt::format("rays of one scan go through {:.0f} % of the other's surfaces",
-                         100 * contradicted);
-    return {};
+    if (!aids_.contradicted) return {};
+    return doubt_of_rays(aids_.contradicted(target, target + 1, alignment.target_from_source),
+                         params_.max_contradicted);
   }
 
   FirstAttempt first_;
@@ -116,10 +110,7 @@ Matrix6d odometry_information(const Pose& motion, const OdometryNoise& noise) {
   const double translation = std::hypot(noise.translation, noise.translation_per_metre * way);
   const double rotation =
       std::hypot(noise.rotation, noise.rotation_per_radian * turn, noise.rotation_per_metre * way);
-  Vector6d information;
-  information << Eigen::Vector3d::Constant(1 / (translation * translation)),
-      Eigen::Vector3d::Constant(1 / (rotation * rotation));
-  return information.asDiagonal();
+  return both_parts(1 / (translation * translation), 1 / (rotation * rotation)).asDiagonal();
 }
 
 SequenceMatch match_in_order(std::span<const Pose> odometry, const PairMatcher& matcher,

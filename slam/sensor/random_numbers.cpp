@@ -2,18 +2,13 @@
 
 #include <cmath>
 
+#include "slam/core/hash.hpp"
 #include "slam/core/pose.hpp"
 
 namespace planum {
 namespace {
 
 constexpr std::uint64_t golden_gamma = 0x9e3779b97f4a7c15;
-
-std::uint64_t mixed(std::uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
-  return x ^ (x >> 31);
-}
 
 }  // namespace
 

@@ -1,17 +1,10 @@
 // The search tree beside FLANN and nanoflann on the same points and queries: scan 0 of
 // kurt3d_corridor, queried by the points of scan 1 as their pose files place them.
-#include <benchmark/benchmark.h>
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wold-style-cast"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wpedantic"
-#pragma GCC diagnostic ignored "-Wunused-parameter"
+#include <filesystem>
 #include <nanoflann.hpp>
 
+#include <benchmark/benchmark.h>
 #include <flann/flann.hpp>
-#pragma GCC diagnostic pop
-
-#include <filesystem>
 
 #include "slam/core/cloud.hpp"
 #include "slam/core/kd_tree.hpp"

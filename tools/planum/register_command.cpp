@@ -9,6 +9,7 @@
 #include "slam/graph/place_search.hpp"
 #include "slam/io/uos.hpp"
 #include "slam/registration/icp.hpp"
+#include "slam/registration/match_doubt.hpp"
 #include "slam/registration/see_through.hpp"
 #include "slam/sensor/range_limits.hpp"
 #include "tools/planum/arguments.hpp"
@@ -86,9 +87,8 @@ Registered registered(const RegisterArguments& arguments) {
     result.doubt = "too few points have a pair";
   else if (!match.converged)
     result.doubt = "the match did not converge";
-  else if (result.contradicted > most_contradicted)
-    result.doubt = fmt::format("rays of one scan go through {:.0f} % of the other's surfaces",
-                               100 * result.contradicted);
+  else
+    result.doubt = doubt_of_rays(result.contradicted, most_contradicted);
   return result;
 }
 
@@ -102,19 +102,18 @@ Vector6d as_guess(const Pose& pose) {
   return result;
 }
 
+/// An array of rows.
+Json rows_of(const Eigen::MatrixXd& matrix) {
+  Json rows = Json::array();
+  for (const Eigen::RowVectorXd row : matrix.rowwise())
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
+  return rows;
+}
+
 void print_json(const Registered& result) {
   const Alignment& match = result.alignment;
-  Json matrix = Json::array(), information = Json::array();
-  for (Eigen::Index i = 0; i < 4; ++i) {
-    const Eigen::RowVector4d row = match.target_from_source.matrix().row(i);
-    matrix.push_back(std::vector<double>(row.begin(), row.end()));
-  }
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    const Eigen::Matrix<double, 1, 6> row = match.information.row(i);
-    information.push_back(std::vector<double>(row.begin(), row.end()));
-  }
-  const Json json = {{"target_from_source", matrix},
-                     {"information", information},
+  const Json json = {{"target_from_source", rows_of(match.target_from_source.matrix())},
+                     {"information", rows_of(match.information)},
                      {"overlap", match.overlap},
                      {"rms_m", match.rms},
                      {"pairs", match.pairs},

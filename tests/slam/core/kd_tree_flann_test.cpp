@@ -1,15 +1,9 @@
 // The search tree against FLANN's exact single-index tree, on real and random points.
-#include <gtest/gtest.h>
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wold-style-cast"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wpedantic"
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#include <flann/flann.hpp>
-#pragma GCC diagnostic pop
-
 #include <random>
 #include <vector>
+
+#include <flann/flann.hpp>
+#include <gtest/gtest.h>
 
 #include "slam/core/kd_tree.hpp"
 

@@ -21,10 +21,7 @@ struct Path {
 };
 
 Matrix6d information(double translation, double rotation) {
-  Vector6d diagonal;
-  diagonal << Eigen::Vector3d::Constant(1 / (translation * translation)),
-      Eigen::Vector3d::Constant(1 / (rotation * rotation));
-  return diagonal.asDiagonal();
+  return both_parts(1 / (translation * translation), 1 / (rotation * rotation)).asDiagonal();
 }
 
 Pose noise(std::mt19937& random, double translation, double rotation) {

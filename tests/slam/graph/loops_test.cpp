@@ -10,28 +10,23 @@ namespace planum {
 namespace {
 
 using testing::message_of;
-using testing::scan_of;
 using testing::shift_between;
 
-struct Walk {
-  std::vector<Pose> truth;
-  std::vector<MatchingScan> scans;
+struct Walk : testing::Walk {
   PoseGraph graph;
 };
 
 /// Stops in the room that come back to where they began, with poses that drifted on the way and are
 /// known to 5 cm at each step.
 Walk walk(double drift) {
-  const Building room = testing::furnished_room();
-  Walk w;
-  w.truth = {
-      pose_from_xyz_ypr({1.0, 1.2, 1.0}, 0.5, 0, 0), pose_from_xyz_ypr({1.8, 1.4, 1.0}, 1.2, 0, 0),
-      pose_from_xyz_ypr({2.0, 3.0, 1.0}, 2.4, 0, 0), pose_from_xyz_ypr({1.2, 1.6, 1.0}, 0.6, 0, 0)};
-  for (std::size_t i = 0; i < w.truth.size(); ++i) {
-    w.scans.push_back(matching_scan(scan_of(room, w.truth[i], i)));
+  Walk w{testing::walk_in_room({pose_from_xyz_ypr({1.0, 1.2, 1.0}, 0.5, 0, 0),
+                                pose_from_xyz_ypr({1.8, 1.4, 1.0}, 1.2, 0, 0),
+                                pose_from_xyz_ypr({2.0, 3.0, 1.0}, 2.4, 0, 0),
+                                pose_from_xyz_ypr({1.2, 1.6, 1.0}, 0.6, 0, 0)}),
+         {}};
+  for (std::size_t i = 0; i < w.truth.size(); ++i)
     w.graph.poses.push_back(Pose(Eigen::Translation3d(drift * static_cast<double>(i), 0, 0)) *
                             w.truth[i]);
-  }
   for (std::size_t i = 1; i < w.truth.size(); ++i)
     w.graph.edges.push_back({.from = i - 1,
                              .to = i,

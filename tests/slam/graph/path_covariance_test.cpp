@@ -11,9 +11,7 @@ namespace planum {
 namespace {
 
 Matrix6d diagonal(double translation, double rotation) {
-  Vector6d v;
-  v << Eigen::Vector3d::Constant(translation), Eigen::Vector3d::Constant(rotation);
-  return v.asDiagonal();
+  return both_parts(translation, rotation).asDiagonal();
 }
 
 TEST(PathCovariance, AgreesWithSampledErrors) {
@@ -32,7 +30,7 @@ TEST(PathCovariance, AgreesWithSampledErrors) {
                   .from_from_to = testing::random_motion(random, 4, 1),
                   .information = covariance.inverse()}};
   const Pose &a = graph.edges[0].from_from_to, &b = graph.edges[1].from_from_to;
-  const auto found = path_covariances(graph, 0, Matrix6d::Zero());
+  const auto found = PathCovariances(graph, Matrix6d::Zero()).from(0);
   ASSERT_TRUE(found[2]);
   EXPECT_TRUE(found[0]->isZero());
   EXPECT_TRUE(found[1]->isApprox(covariance, 1e-9));
@@ -58,7 +56,7 @@ TEST(PathCovariance, TakesTheBestPathAndAddsTheNoiseOfSteps) {
                  {.from = 1, .to = 2, .information = diagonal(100, 100)},
                  {.from = 0, .to = 2, .information = diagonal(10, 10)},
                  {.from = 0, .to = 2, .information = diagonal(1e9, 1e9), .accepted = false}};
-  const auto found = path_covariances(graph, 0, diagonal(0.001, 0.001));
+  const auto found = PathCovariances(graph, diagonal(0.001, 0.001)).from(0);
   EXPECT_NEAR((*found[2])(0, 0), 0.02 + 0.002, 1e-12);
   EXPECT_FALSE(found[3]) << "nothing leads there";
 }
@@ -67,7 +65,7 @@ TEST(PathCovariance, GoesNotAlongEdgesThatLeaveADirectionOpen) {
   PoseGraph graph;
   graph.poses.resize(2, Pose::Identity());
   graph.edges = {{.from = 0, .to = 1, .information = diagonal(100, 0)}};
-  EXPECT_FALSE(path_covariances(graph, 0, Matrix6d::Zero())[1]);
+  EXPECT_FALSE(PathCovariances(graph, Matrix6d::Zero()).from(0)[1]);
 }
 
 }  // namespace

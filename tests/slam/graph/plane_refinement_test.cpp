@@ -18,24 +18,16 @@ using testing::message_of;
 using testing::random_motion;
 using testing::scan_of;
 using testing::shift_between;
-
-struct Walk {
-  std::vector<Pose> truth;
-  std::vector<MatchingScan> scans;
-};
+using testing::Walk;
 
 /// Scans of a furnished room; `draw` makes other noise.
 Walk walk_in_room(std::uint64_t draw, double noise = 0.005) {
-  const Building room = testing::furnished_room();
-  Walk w;
-  w.truth = {pose_from_xyz_ypr({1.0, 1.2, 1.0}, 0.3, 0, 0),
-             pose_from_xyz_ypr({1.8, 1.6, 1.0}, 0.9, 0.02, 0),
-             pose_from_xyz_ypr({2.2, 3.4, 1.0}, -2.0, 0, 0.02),
-             pose_from_xyz_ypr({4.0, 1.4, 1.0}, 2.5, -0.01, 0),
-             pose_from_xyz_ypr({1.2, 2.8, 1.0}, -0.5, 0, 0)};
-  for (std::size_t i = 0; i < w.truth.size(); ++i)
-    w.scans.push_back(matching_scan(scan_of(room, w.truth[i], 10 * draw + i, noise)));
-  return w;
+  return testing::walk_in_room({pose_from_xyz_ypr({1.0, 1.2, 1.0}, 0.3, 0, 0),
+                                pose_from_xyz_ypr({1.8, 1.6, 1.0}, 0.9, 0.02, 0),
+                                pose_from_xyz_ypr({2.2, 3.4, 1.0}, -2.0, 0, 0.02),
+                                pose_from_xyz_ypr({4.0, 1.4, 1.0}, 2.5, -0.01, 0),
+                                pose_from_xyz_ypr({1.2, 2.8, 1.0}, -0.5, 0, 0)},
+                               draw, noise);
 }
 
 const Walk& walk() {

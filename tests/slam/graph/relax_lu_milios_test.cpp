@@ -26,24 +26,14 @@ using testing::numbered;
 using testing::random_motion;
 using testing::scan_of;
 using testing::shift_between;
-
-struct Walk {
-  std::vector<Pose> truth;
-  std::vector<MatchingScan> scans;
-};
+using testing::Walk;
 
 const Walk& walk() {
-  static const Walk result = [] {
-    const Building room = testing::furnished_room();
-    Walk w;
-    w.truth = {pose_from_xyz_ypr({1.0, 1.2, 1.0}, 0.3, 0, 0),
-               pose_from_xyz_ypr({1.8, 1.6, 1.0}, 0.9, 0.02, 0),
-               pose_from_xyz_ypr({2.2, 3.4, 1.0}, -2.0, 0, 0.02),
-               pose_from_xyz_ypr({4.0, 1.4, 1.0}, 2.5, -0.01, 0)};
-    for (std::size_t i = 0; i < w.truth.size(); ++i)
-      w.scans.push_back(matching_scan(scan_of(room, w.truth[i], i)));
-    return w;
-  }();
+  static const Walk result =
+      testing::walk_in_room({pose_from_xyz_ypr({1.0, 1.2, 1.0}, 0.3, 0, 0),
+                             pose_from_xyz_ypr({1.8, 1.6, 1.0}, 0.9, 0.02, 0),
+                             pose_from_xyz_ypr({2.2, 3.4, 1.0}, -2.0, 0, 0.02),
+                             pose_from_xyz_ypr({4.0, 1.4, 1.0}, 2.5, -0.01, 0)});
   return result;
 }
 

@@ -8,24 +8,14 @@
 namespace planum {
 namespace {
 
-using testing::scan_of;
 using testing::shift_between;
-
-struct Walk {
-  std::vector<Pose> truth;
-  std::vector<MatchingScan> scans;
-};
+using testing::Walk;
 
 /// Stops in the room; the laser looks ahead only, and at the last stop the robot has turned round.
 Walk turned_walk() {
-  const Building room = testing::furnished_room();
-  Walk walk;
-  walk.truth = {
-      pose_from_xyz_ypr({3.6, 1.0, 1}, 3.3, 0, 0), pose_from_xyz_ypr({2.9, 0.9, 1}, 3.0, 0, 0),
-      pose_from_xyz_ypr({2.4, 0.9, 1}, 0.0, 0, 0), pose_from_xyz_ypr({2.9, 1.0, 1}, 3.2, 0, 0)};
-  for (std::size_t i = 0; i < walk.truth.size(); ++i)
-    walk.scans.push_back(matching_scan(scan_of(room, walk.truth[i], i)));
-  return walk;
+  return testing::walk_in_room(
+      {pose_from_xyz_ypr({3.6, 1.0, 1}, 3.3, 0, 0), pose_from_xyz_ypr({2.9, 0.9, 1}, 3.0, 0, 0),
+       pose_from_xyz_ypr({2.4, 0.9, 1}, 0.0, 0, 0), pose_from_xyz_ypr({2.9, 1.0, 1}, 3.2, 0, 0)});
 }
 
 TEST(Merged, HoldsThePointsAndSurfacesOfAllScans) {

@@ -14,21 +14,14 @@ using testing::message_of;
 using testing::random_motion;
 using testing::scan_of;
 using testing::shift_between;
-
-struct Walk {
-  std::vector<Pose> truth;
-  std::vector<MatchingScan> scans;
-};
+using testing::Walk;
 
 /// Some stops in the room.
 Walk walk() {
-  const Building room = testing::furnished_room();
-  Walk result;
+  std::vector<Pose> truth;
   for (int i = 0; i < 4; ++i)
-    result.truth.push_back(pose_from_xyz_ypr({1.0 + 0.4 * i, 1.2 + 0.3 * i, 1}, 0.3 * i, 0, 0));
-  for (std::size_t i = 0; i < result.truth.size(); ++i)
-    result.scans.push_back(matching_scan(scan_of(room, result.truth[i], i)));
-  return result;
+    truth.push_back(pose_from_xyz_ypr({1.0 + 0.4 * i, 1.2 + 0.3 * i, 1}, 0.3 * i, 0, 0));
+  return testing::walk_in_room(std::move(truth));
 }
 
 std::vector<Pose> drifting(const std::vector<Pose>& truth, std::mt19937& random) {

@@ -2,11 +2,14 @@
 
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "slam/core/cloud.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
 #include "slam/core/pose.hpp"
+#include "slam/registration/matching_scan.hpp"
 #include "slam/sensor/building.hpp"
 #include "slam/sensor/ray_caster.hpp"
 #include "slam/sensor/simulator.hpp"
@@ -49,6 +52,21 @@ inline Cloud scan_of(const Building& building, const Pose& building_from_scan,
   params.range_noise = noise;
   params.mixed_pixel = 0;
   return points_from_slices(simulate_scan(model, building_from_scan, number, params).scan).cloud;
+}
+
+/// Stops in a room and a scan of each.
+struct Walk {
+  std::vector<Pose> truth;
+  std::vector<MatchingScan> scans;
+};
+
+/// Scans of the furnished room from some poses; `draw` makes other noise.
+inline Walk walk_in_room(std::vector<Pose> truth, std::uint64_t draw = 0, double noise = 0.005) {
+  const Building room = furnished_room();
+  Walk walk{std::move(truth), {}};
+  for (std::size_t i = 0; i < walk.truth.size(); ++i)
+    walk.scans.push_back(matching_scan(scan_of(room, walk.truth[i], 10 * draw + i, noise)));
+  return walk;
 }
 
 /// A motion of a given length and angle in random directions.

@@ -40,9 +40,7 @@ constexpr OdometryNoise unknown_odometry{.translation = 50, .rotation = pi / 2};
 class StepAids {
  public:
   StepAids(PairMatching& matching, StageContext& context)
-      : matching_(matching),
-        context_(context),
-        views_(context.results.imported.get().scans.size()) {}
+      : matching_(matching), context_(context) {}
 
   SequenceAids aids() {
     return {.second = matching_.gated_matcher(),
@@ -58,15 +56,15 @@ class StepAids {
   }
 
  private:
+  /// All are made when the first one is needed: every scan is part of a step.
   const RangeView& view(std::size_t scan) {
-    if (!views_[scan])
-      views_[scan] = range_view(context_.results.matching_scans(context_.progress)[scan]);
-    return *views_[scan];
+    if (views_.empty()) views_ = range_views(context_.results.matching_scans(context_.progress));
+    return views_[scan];
   }
 
   PairMatching& matching_;
   StageContext& context_;
-  std::vector<std::optional<RangeView>> views_;
+  std::vector<RangeView> views_;
 };
 
 SequenceMatch matched(const Imported& imported, StageContext& context) {
