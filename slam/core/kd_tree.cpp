@@ -8,6 +8,7 @@ namespace planum {
 namespace {
 
 using Four = float __attribute__((vector_size(16)));
+using Sixteen = float __attribute__((vector_size(64)));
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float largest = std::numeric_limits<float>::max();
 
@@ -38,11 +39,10 @@ class KdSearch {
   /// Squared distances to all places of a bucket; infinite where there is no point.
   void distances(std::uint32_t leaf, Distances& squared) const {
     const KdTree::Bucket& bucket = bucket_of(leaf);
-    for (std::size_t i = 0; i < bucket_size; ++i) {
-      const float dx = bucket.x[i] - query_[0], dy = bucket.y[i] - query_[1],
-                  dz = bucket.z[i] - query_[2];
-      squared[i] = dx * dx + dy * dy + dz * dz;
-    }
+    const Sixteen dx = std::bit_cast<Sixteen>(bucket.x) - query_[0],
+                  dy = std::bit_cast<Sixteen>(bucket.y) - query_[1],
+                  dz = std::bit_cast<Sixteen>(bucket.z) - query_[2];
+    squared = std::bit_cast<Distances>(dx * dx + dy * dy + dz * dz);
   }
 
   /// A point by its place; the distance is what distances() has for it.
@@ -264,25 +264,32 @@ void KdTree::k_nearest(const Eigen::Vector3f& query, std::size_t k, std::vector<
   if (k == 0) return;
   const KdSearch search(*this, query);
   float bound = squared_bound(max_distance);
-  const auto insert = [&](const Neighbour& found) {
-    if (result.size() == k) {
-      if (!(found < result.back())) return;
-    } else {
-      result.push_back(found);
-    }
-    std::size_t at = result.size() - 1;
-    for (; at > 0 && found < result[at - 1]; --at) result[at] = result[at - 1];
-    result[at] = found;
-    if (result.size() == k) bound = result.back().squared_distance;
+  std::array<std::uint64_t, 64> few;
+  std::vector<std::uint64_t> many(k > few.size() ? k : 0);
+  const std::span<std::uint64_t> best(k > few.size() ? many.data() : few.data(), k);
+  std::size_t count = 0;
+  const auto insert = [&](std::uint64_t found) {
+    if (count == k && found >= best[k - 1]) return;
+    std::size_t at = count < k ? count++ : k - 1;
+    for (; at > 0 && found < best[at - 1]; --at) best[at] = best[at - 1];
+    best[at] = found;
   };
   const auto visit = [&](std::uint32_t leaf) {
     KdSearch::Distances squared;
     search.distances(leaf, squared);
     const auto& indices = search.bucket_of(leaf).index;
-    for (std::size_t i = 0; i < squared.size(); ++i)
-      if (squared[i] <= bound) insert({indices[i], squared[i]});
+    // Which are near enough cannot be foretold: gathered without branches.
+    std::array<std::uint64_t, bucket_size> near;
+    std::size_t gathered = 0;
+    for (std::size_t i = 0; i < squared.size(); ++i) {
+      near[gathered] = Neighbour{indices[i], squared[i]}.rank();
+      gathered += squared[i] <= bound;
+    }
+    for (std::size_t i = 0; i < gathered; ++i) insert(near[i]);
+    if (count == k) bound = Neighbour::of_rank(best[k - 1]).squared_distance;
   };
   search.descend(1, visit, [&] { return bound; });
+  for (std::size_t i = 0; i < count; ++i) result.push_back(Neighbour::of_rank(best[i]));
 }
 
 void KdTree::within(const Eigen::Vector3f& query, float radius,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -18,9 +19,15 @@ struct Neighbour {
   float squared_distance = 0;  ///< m^2
 
   /// Nearer first, then the lower index: answers do not depend on the order of the search.
-  friend bool operator<(const Neighbour& a, const Neighbour& b) {
-    return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance
-                                                    : a.index < b.index;
+  friend bool operator<(const Neighbour& a, const Neighbour& b) { return a.rank() < b.rank(); }
+
+  /// The same order as a number: floats that are not negative are ordered as their bits are.
+  std::uint64_t rank() const {
+    return std::uint64_t{std::bit_cast<std::uint32_t>(squared_distance)} << 32 | index;
+  }
+  static Neighbour of_rank(std::uint64_t rank) {
+    return {static_cast<std::uint32_t>(rank),
+            std::bit_cast<float>(static_cast<std::uint32_t>(rank >> 32))};
   }
 };
 
@@ -43,6 +50,10 @@ class KdTree {
 
   std::size_t size() const { return size_; }
 
+  /// Numbers the points anew in the order of the leaves, so that points near each other in the list
+  /// are near each other in space. Returns the old number of each; the list is to be sorted so.
+  std::vector<std::uint32_t> number_by_leaf();
+
   /// The nearest point not farther than max_distance (m).
   std::optional<Neighbour> nearest(const Eigen::Vector3f& query, float max_distance) const;
 
@@ -64,10 +75,10 @@ class KdTree {
  private:
   static constexpr std::size_t bucket_size = 16;
 
-  struct Box {
+  struct alignas(32) Box {
     std::array<float, 4> low, high;  ///< x y z and a zero, four at a time for the processor
   };
-  struct Bucket {
+  struct alignas(64) Bucket {
     std::array<float, bucket_size> x, y, z;        ///< beyond the last point: infinity
     std::array<std::uint32_t, bucket_size> index;  ///< where a point was in the input
   };

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -13,6 +14,8 @@ namespace planum {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
+/// The number in the places of a bucket that are empty.
+constexpr std::uint32_t no_point = std::numeric_limits<std::uint32_t>::max();
 
 struct IndexedPoint {
   std::array<float, 3> point;
@@ -117,7 +120,7 @@ class KdBuild {
     bucket.x.fill(infinity);
     bucket.y.fill(infinity);
     bucket.z.fill(infinity);
-    bucket.index.fill(std::numeric_limits<std::uint32_t>::max());
+    bucket.index.fill(no_point);
     for (std::size_t i = 0; i < points.size(); ++i) {
       bucket.x[i] = points[i].point[0];
       bucket.y[i] = points[i].point[1];
@@ -144,6 +147,18 @@ KdTree::KdTree(std::span<const Eigen::Vector3f> points)
   cells_.resize(2 * first_leaf_);
   buckets_.resize(first_leaf_);
   KdBuild(*this).run(sorted);
+}
+
+std::vector<std::uint32_t> KdTree::number_by_leaf() {
+  std::vector<std::uint32_t> old_numbers;
+  old_numbers.reserve(size_);
+  for (Bucket& bucket : buckets_) {
+    for (std::uint32_t& index : bucket.index) {
+      if (index == no_point) break;
+      old_numbers.push_back(std::exchange(index, static_cast<std::uint32_t>(old_numbers.size())));
+    }
+  }
+  return old_numbers;
 }
 
 }  // namespace planum

@@ -13,6 +13,7 @@
 #include "slam/graph/edge_relaxation.hpp"
 #include "slam/graph/scan_links.hpp"
 #include "slam/registration/icp.hpp"
+#include "slam/registration/overlap.hpp"
 
 namespace planum {
 namespace {
@@ -22,6 +23,11 @@ constexpr double first_gate_per_last = 3;
 constexpr double gate_factor = 0.5;
 /// A gate before the last is done when no pose moves more than this much of it.
 constexpr double step_per_gate = 0.05;
+/// Where poses still move far at the last gate, links are chosen anew so many times at most.
+constexpr int most_last_rounds = 3;
+/// m; who sees the same as whom is asked anew when a pose has moved this far, a small part of the
+/// distance at which points count as common.
+const double new_links = 0.1 * OverlapParams{}.distance;
 
 void check(const PoseGraph& graph, std::span<const MatchingScan> scans,
            const LuMiliosParams& params) {
@@ -50,11 +56,7 @@ class Relaxation {
  public:
   Relaxation(const PoseGraph& graph, std::span<const MatchingScan> scans,
              const LuMiliosParams& params, std::vector<Pose> poses)
-      : graph_(graph),
-        scans_(scans),
-        params_(params),
-        poses_(std::move(poses)),
-        newly_selected_(scans.size(), false) {
+      : graph_(graph), scans_(scans), params_(params), poses_(std::move(poses)) {
     for (const MatchingScan& scan : scans) selections_.push_back(scan.selection(params.max_points));
     for (const MatchingScan& scan : scans)
       if (scan.noise > 0) noise_ = noise_ == 0 ? scan.noise : std::min(noise_, scan.noise);
@@ -68,15 +70,17 @@ class Relaxation {
     const double first = params_.first_gate > 0 && params_.last_gate > 0
                              ? std::max(1.0, params_.first_gate / params_.last_gate)
                              : first_gate_per_last;
-    for (double gate = first;; gate = std::max(1.0, gate * gate_factor)) {
-      choose_links();
-      const bool last = gate <= 1;
-      result.converged = iterate(gate, last, progress, result);
-      if (last) break;
-    }
-    if (!select_more()) return;
     choose_links();
-    result.converged = iterate(1, true, progress, result);
+    for (double gate = first; gate > 1; gate *= gate_factor) {
+      iterate(gate, false, progress, result);
+      if (links_are_old()) choose_links();
+    }
+    for (int round = 0; round < most_last_rounds; ++round) {
+      select_more();
+      result.converged = iterate(1, true, progress, result);
+      if (!links_are_old()) break;
+      choose_links();
+    }
   }
 
   /// Fits of all links at the last gate, with any poses.
@@ -93,24 +97,24 @@ class Relaxation {
   const std::vector<Pose>& poses() const { return poses_; }
 
  private:
-  /// Which points are looked at at last: a scan with few links needs more in each to be as well
-  /// placed. False if there are no more than before.
-  bool select_more() {
+  /// The points that are looked at at last: a scan with few links needs more in each to be as well
+  /// placed.
+  void select_more() {
+    if (params_.max_points == 0) return;
     std::vector<std::size_t> links(scans_.size(), 0);
     for (const ScanLink& link : links_) ++links[link.pair().first], ++links[link.pair().second];
-    bool more = false;
     for (std::size_t i = 0; i < scans_.size(); ++i) {
-      if (links[i] == 0 || params_.max_points == 0) continue;
+      if (links[i] == 0) continue;
       const std::size_t most = params_.last_points > 0
                                    ? std::max(params_.max_points, params_.last_points / links[i])
                                    : 0;
-      std::vector<std::uint32_t> selection = scans_[i].selection(most);
-      if (selection.size() <= selections_[i].size()) continue;
-      selections_[i] = std::move(selection);
-      newly_selected_[i] = more = true;
+      selections_[i] = scans_[i].selection(most);
     }
-    return more;
+    parallel_for(links_.size(), 1,
+                 [&](std::size_t l, std::size_t) { links_[l].select(selections_); });
   }
+
+  bool links_are_old() const { return largest_move(poses_when_linked_) > new_links; }
 
   double last_gate(const ScanLink& link) const {
     return params_.last_gate > 0 ? params_.last_gate : gate_per_noise * link.noise();
@@ -130,12 +134,12 @@ class Relaxation {
     links_.clear();
     for (const ScanPair& pair : pairs) {
       const auto stays = known.find(pair);
-      if (stays != known.end() && !newly_selected_[pair.first] && !newly_selected_[pair.second])
+      if (stays != known.end())
         links_.push_back(std::move(stays->second));
       else
         links_.emplace_back(pair, scans_, selections_);
     }
-    newly_selected_.assign(scans_.size(), false);
+    poses_when_linked_ = poses_;
     const std::set<ScanPair> linked(pairs.begin(), pairs.end());
     kept_edges_.clear();
     kept_information_.clear();
@@ -162,12 +166,17 @@ class Relaxation {
     LuMiliosSystem lu_milios = system();
     const double enough =
         last ? params_.tolerance * noise_ : step_per_gate * gate * gate_per_noise * noise_;
+    std::vector<Vector6d> motions, before;
+    double share = 1;  // of each motion that is made
     for (int i = 0; i < params_.max_iterations; ++i) {
       std::vector<LinkEquation> equations;
       for (const LinkFit& fit : fits(poses_, gate)) equations.push_back(fit.equation);
       for (std::size_t k = 0; k < kept_edges_.size(); ++k)
         equations.push_back(edge_equation(*kept_edges_[k], kept_information_[k], poses_));
-      const double moved = move(lu_milios.solve(equations, gentle_damping()));
+      before = std::exchange(motions, lu_milios.solve(equations, gentle_damping()));
+      // Where a few pairs change to and fro, so do the poses: between the two they rest.
+      if (!before.empty() && turned_back(motions, before)) share /= 2;
+      const double moved = move(motions, share);
       progress.report(static_cast<std::size_t>(++result.iterations), 0);
       if (moved < enough) return true;
     }
@@ -175,13 +184,34 @@ class Relaxation {
   }
 
   /// Moves the poses; m, how far the points of the scan that moved most went, rms.
-  double move(const std::vector<Vector6d>& motions) {
-    double largest = 0;
+  double move(const std::vector<Vector6d>& motions, double share) {
+    const std::vector<Pose> before = poses_;
+    for (std::size_t i = 0; i < motions.size(); ++i)
+      poses_[i] = orthonormalized(exp_se3(share * motions[i]) * poses_[i]);
+    return largest_move(before);
+  }
+
+  /// Whether motions mostly undo those before.
+  bool turned_back(const std::vector<Vector6d>& motions,
+                   const std::vector<Vector6d>& before) const {
+    double along = 0, squares = 0, squares_before = 0;
     for (std::size_t i = 0; i < motions.size(); ++i) {
-      const Pose moved = orthonormalized(exp_se3(motions[i]) * poses_[i]);
-      largest = std::max(largest, std::hypot((moved.translation() - poses_[i].translation()).norm(),
-                                             motions[i].tail<3>().norm() * scans_[i].radius));
-      poses_[i] = moved;
+      const Vector6d unit = both_parts(1, scans_[i].radius);
+      const Vector6d now = unit.cwiseProduct(motions[i]), then = unit.cwiseProduct(before[i]);
+      along += now.dot(then);
+      squares += now.squaredNorm();
+      squares_before += then.squaredNorm();
+    }
+    return along < -0.5 * std::sqrt(squares * squares_before);
+  }
+
+  /// m, how far the points of the scan that moved most are from where they were, rms.
+  double largest_move(const std::vector<Pose>& before) const {
+    double largest = 0;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      const double shift = (poses_[i].translation() - before[i].translation()).norm();
+      const double turn = rotation_angle(before[i].inverse() * poses_[i]);
+      largest = std::max(largest, std::hypot(shift, turn * scans_[i].radius));
     }
     return largest;
   }
@@ -193,8 +223,8 @@ class Relaxation {
   double noise_ = 0;
   std::set<ScanPair> excluded_;
   std::vector<std::vector<std::uint32_t>> selections_;  ///< of each scan
-  std::vector<bool> newly_selected_;                    ///< whose links are to be made anew
   std::vector<ScanLink> links_;
+  std::vector<Pose> poses_when_linked_;
   std::vector<const Edge*> kept_edges_;
   std::vector<Matrix6d> kept_information_;
 };

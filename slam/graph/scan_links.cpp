@@ -77,6 +77,11 @@ ScanLink::ScanLink(const ScanPair& pair, std::span<const MatchingScan> scans,
       a_in_b_(scans[pair.first], scans[pair.second], selections[pair.first]),
       b_in_a_(scans[pair.second], scans[pair.first], selections[pair.second]) {}
 
+void ScanLink::select(std::span<const std::vector<std::uint32_t>> selections) {
+  a_in_b_.select(selections[pair_.first]);
+  b_in_a_.select(selections[pair_.second]);
+}
+
 LinkFit ScanLink::fit(const std::vector<Pose>& world_from_scan, Pairing pairing, double gate,
                       double max_normal_angle, std::size_t min_pairs) {
   const Pose &world_from_a = world_from_scan[pair_.first],

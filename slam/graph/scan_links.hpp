@@ -52,6 +52,9 @@ class ScanLink {
   LinkFit fit(const std::vector<Pose>& world_from_scan, Pairing pairing, double gate,
               double max_normal_angle, std::size_t min_pairs);
 
+  /// Looks at other points from now on, positions for each scan as above.
+  void select(std::span<const std::vector<std::uint32_t>> selections);
+
   const ScanPair& pair() const { return pair_; }
 
   /// m, of a residual between the two scans.

@@ -66,7 +66,7 @@ class Matching {
         spacing_(std::max(source.spacing, target.spacing)),
         noise_(pair_noise(source, target)),
         guess_(guess),
-        coarse_(source, target, source.coarse),
+        coarse_(source, target, source.coarse_selection(params.coarse_points)),
         fine_(source, target, source.selection(params.max_points)) {}
 
   Alignment run() {

@@ -21,8 +21,9 @@ struct IcpParams {
   int max_iterations = 30;                ///< at each gate
   double tolerance =
       0.02;  ///< the last gate is done when a step is less than this much of the noise
-  std::size_t max_points = 5000;  ///< of the source, evenly chosen; 0: all
-  std::size_t min_pairs = 50;     ///< fewer give no result
+  std::size_t max_points = 5000;     ///< of the source, evenly chosen; 0: all
+  std::size_t coarse_points = 1000;  ///< the same while the gate is wide; 0: all coarse ones
+  std::size_t min_pairs = 50;        ///< fewer give no result
 };
 
 /// Where one scan lies in the frame of another, and how well that is known.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
@@ -56,6 +56,25 @@ std::vector<std::uint32_t> shuffled_by_place(std::span<const Eigen::Vector3f> po
   return result;
 }
 
+/// Those of `positions` that are among `chosen`, in their order.
+std::vector<std::uint32_t> those_among(std::span<const std::uint32_t> chosen,
+                                       std::span<const std::uint32_t> positions) {
+  std::vector<bool> is_chosen(positions.size(), false);
+  for (const std::uint32_t i : chosen) is_chosen[i] = true;
+  std::vector<std::uint32_t> result;
+  for (const std::uint32_t i : positions)
+    if (is_chosen[i]) result.push_back(i);
+  return result;
+}
+
+/// At most so many of the first, ascending; 0: all.
+std::vector<std::uint32_t> first_of(std::span<const std::uint32_t> positions, std::size_t most) {
+  if (most > 0) positions = positions.first(std::min(most, positions.size()));
+  std::vector<std::uint32_t> result(positions.begin(), positions.end());
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
 /// Count, sum and sum of products of points relative to somewhere near them, as PointMoments but
 /// small enough to gather many of them fast.
 template <class Real>
@@ -94,7 +113,7 @@ struct Choice {
   std::vector<PatchSums<float>> sums;
 };
 
-Choice choice_of(std::span<const Eigen::Vector3f> points, double voxel) {
+Choice chosen(std::span<const Eigen::Vector3f> points, double voxel) {
   const PatchSums<float> itself{.count = 1};
   Choice result;
   if (voxel == 0) {
@@ -111,6 +130,15 @@ Choice choice_of(std::span<const Eigen::Vector3f> points, double voxel) {
     const Eigen::Vector3f shift = points[i] - result.points[v];
     result.sums[v].add(itself, {shift.x(), shift.y(), shift.z()});
   }
+  return result;
+}
+
+template <class Value>
+std::vector<Value> in_order(const std::vector<Value>& values,
+                            std::span<const std::uint32_t> order) {
+  std::vector<Value> result;
+  result.reserve(order.size());
+  for (const std::uint32_t i : order) result.push_back(values[i]);
   return result;
 }
 
@@ -177,25 +205,26 @@ void fit_planes(const Choice& choice, const MatchingScanParams& params, std::siz
 }  // namespace
 
 std::vector<std::uint32_t> MatchingScan::selection(std::size_t most) const {
-  std::vector<std::uint32_t> result;
-  if (most == 0 || most >= points.size()) {
-    result.resize(points.size());
-    std::iota(result.begin(), result.end(), 0u);
-    return result;
-  }
-  result.assign(shuffled.begin(), shuffled.begin() + static_cast<std::ptrdiff_t>(most));
-  std::sort(result.begin(), result.end());
-  return result;
+  return first_of(shuffled, most);
+}
+
+std::vector<std::uint32_t> MatchingScan::coarse_selection(std::size_t most) const {
+  return first_of(coarse, most);
 }
 
 MatchingScan matching_scan(const Cloud& cloud, const MatchingScanParams& params) {
   check(params);
-  const Choice choice = choice_of(cloud.points, params.voxel);
+  Choice choice = chosen(cloud.points, params.voxel);
+  KdTree tree(choice.points);
+  const std::vector<std::uint32_t> order = tree.number_by_leaf();
+  choice = {in_order(choice.points, order), in_order(choice.sums, order)};
   MatchingScan scan{.points = choice.points,
                     .planes = std::vector<LocalPlane>(choice.points.size()),
-                    .coarse = voxel_grid(choice.points, params.coarse_voxel).representative,
                     .shuffled = shuffled_by_place(choice.points),
-                    .tree = KdTree(choice.points)};
+                    .coarse = {},
+                    .tree = std::move(tree)};
+  scan.coarse =
+      those_among(voxel_grid(scan.points, params.coarse_voxel).representative, scan.shuffled);
   std::vector<float> spacing(scan.points.size());
   parallel_for(scan.points.size(), points_per_block, [&](std::size_t begin, std::size_t end) {
     fit_planes(choice, params, begin, end, scan, spacing);
@@ -233,9 +262,10 @@ MatchingScan merged(std::span<const PlacedScan> scans) {
   }
   MatchingScan result{.points = points,
                       .planes = std::move(planes),
-                      .coarse = std::move(coarse),
                       .shuffled = shuffled_by_place(points),
+                      .coarse = {},
                       .tree = KdTree(points)};
+  result.coarse = those_among(coarse, result.shuffled);
   if (points.empty()) return result;
   result.noise = upper_median(noise);
   result.spacing = upper_median(spacing);

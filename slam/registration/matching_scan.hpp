@@ -32,10 +32,11 @@ struct LocalPlane {
 
 /// A scan made ready for matching: few points, their surfaces, a search tree.
 struct MatchingScan {
-  std::vector<Eigen::Vector3f> points;  ///< m, scanner frame; real points of the scan
+  std::vector<Eigen::Vector3f> points;  ///< m, scanner frame; real points of the scan,
+                                        ///< ordered so that neighbours are near in memory
   std::vector<LocalPlane> planes;       ///< as long as points
-  std::vector<std::uint32_t> coarse;    ///< positions of an even, thinner choice of points
   std::vector<std::uint32_t> shuffled;  ///< all positions; any first ones are an even choice
+  std::vector<std::uint32_t> coarse;    ///< of them the positions of one point a coarse voxel
   KdTree tree;                          ///< of points
   double noise = 0;                     ///< m, median thickness of the local planes
   double spacing = 0;                   ///< m, median distance to the nearest other point
@@ -52,6 +53,9 @@ struct MatchingScan {
   /// Positions of at most `most` points, ascending, chosen by where they are: nearly the same scan,
   /// with some points more, fewer or moved a little, gives nearly the same choice. 0: all.
   std::vector<std::uint32_t> selection(std::size_t most) const;
+
+  /// The same of the coarse ones.
+  std::vector<std::uint32_t> coarse_selection(std::size_t most) const;
 };
 
 /// Reduces a scan (scanner frame, scanner at the origin) and fits planes to the neighbourhoods.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -88,14 +89,23 @@ Eigen::Matrix3d pair_metric(const Pair& pair) {
 
 PairFinder::PairFinder(const MatchingScan& source, const MatchingScan& target,
                        std::span<const std::uint32_t> selection)
-    : source_(&source), target_(&target), seekers_(selection.size()) {
-  for (std::size_t i = 0; i < selection.size(); ++i) {
-    const std::uint32_t s = selection[i];
-    seekers_[i] = {.point = source.points[s],
-                   .smoothed = source.smoothed(s),
-                   .normal = source.planes[s].normal,
-                   .tilt_variance = source.planes[s].tilt_variance,
-                   .memory = {}};
+    : source_(&source), target_(&target) {
+  select(selection);
+}
+
+void PairFinder::select(std::span<const std::uint32_t> selection) {
+  const std::vector<Seeker> before = std::exchange(seekers_, {});
+  seekers_.reserve(selection.size());
+  auto old = before.begin();
+  for (const std::uint32_t s : selection) {
+    while (old != before.end() && old->index < s) ++old;
+    const bool stays = old != before.end() && old->index == s;
+    seekers_.push_back({.index = s,
+                        .point = source_->points[s],
+                        .smoothed = source_->smoothed(s),
+                        .normal = source_->planes[s].normal,
+                        .tilt_variance = source_->planes[s].tilt_variance,
+                        .memory = stays ? old->memory : SearchMemory{}});
   }
 }
 

@@ -44,9 +44,13 @@ Eigen::Matrix3d pair_metric(const Pair& pair);
 /// found, so that the next one is short.
 class PairFinder {
  public:
-  /// `selection` are positions of source points. Both scans must outlive the finder.
+  /// `selection` are positions of source points, best ascending. Both scans must outlive the
+  /// finder.
   PairFinder(const MatchingScan& source, const MatchingScan& target,
              std::span<const std::uint32_t> selection);
+
+  /// Looks at other points of the source from now on. Those that stay keep their memory.
+  void select(std::span<const std::uint32_t> selection);
 
   /// Pairs in the order of the selection.
   std::vector<Pair> find(const Pose& target_from_source, Pairing pairing, const PairGate& gate);
@@ -60,6 +64,7 @@ class PairFinder {
  private:
   /// A selected point of the source, in the source's frame.
   struct Seeker {
+    std::uint32_t index = 0;   ///< in the source
     Eigen::Vector3f point;     ///< m
     Eigen::Vector3f smoothed;  ///< m, MatchingScan::smoothed
     Eigen::Vector3f normal;    ///< zero: unknown

@@ -28,7 +28,7 @@ template <class Archive>
 void fields(Archive& archive, IcpParams& params) {
   archive(params.pairing, params.minimizer, params.first_gate, params.last_gate, params.point_gate,
           params.gate_factor, params.max_normal_angle, params.max_iterations, params.tolerance,
-          params.max_points, params.min_pairs);
+          params.max_points, params.coarse_points, params.min_pairs);
 }
 
 template <class Archive>

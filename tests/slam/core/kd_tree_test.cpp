@@ -106,7 +106,7 @@ TEST(KdTree, AgreesWithBruteForceBitForBit) {
         if (nearest) expect_same({*nearest}, {truth.front()}, name + " nearest");
         tree.within(query, radius, found);
         expect_same(found, truth, name + " within");
-        for (const std::size_t k : {std::size_t{1}, std::size_t{7}, std::size_t{40}}) {
+        for (const std::size_t k : {1u, 7u, 40u, 100u}) {
           tree.k_nearest(query, k, found, radius);
           auto first = truth;
           first.resize(std::min(first.size(), k));
@@ -172,6 +172,23 @@ TEST(KdTree, IsTheSameForAnyNumberOfThreads) {
   set_thread_count(0);
   expect_same(answers[0], answers[1], "two threads");
   expect_same(answers[0], answers[2], "five threads");
+}
+
+TEST(KdTree, NumberedByLeafAnswersWithTheNewNumbers) {
+  for (const auto& [name, points] : distributions()) {
+    KdTree tree(points);
+    const std::vector<std::uint32_t> old_numbers = tree.number_by_leaf();
+    ASSERT_EQ(old_numbers.size(), points.size()) << name;
+    Points in_order;
+    for (const std::uint32_t i : old_numbers) in_order.push_back(points[i]);
+    EXPECT_TRUE(std::is_permutation(in_order.begin(), in_order.end(), points.begin(), points.end()))
+        << name;
+    std::vector<Neighbour> found;
+    for (const Eigen::Vector3f& query : queries_for(points)) {
+      tree.within(query, 0.4f, found);
+      expect_same(found, brute_force(in_order, query, 0.4f), name);
+    }
+  }
 }
 
 TEST(KdTree, OfNothingFindsNothing) {

@@ -1,7 +1,12 @@
 #include "slam/registration/matching_scan.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <random>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -90,6 +95,24 @@ TEST(MatchingScan, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
+TEST(MatchingScan, CoarseSelectionsAreEvenAndAscending) {
+  const MatchingScan scan = matching_scan(
+      testing::scan_of(testing::furnished_room(), Pose(Eigen::Translation3d(1, 2, 1))));
+  const auto all = scan.coarse_selection(0), some = scan.coarse_selection(all.size() / 4);
+  ASSERT_GT(all.size(), 200u);
+  EXPECT_LT(all.size(), scan.points.size());
+  EXPECT_EQ(some.size(), all.size() / 4);
+  EXPECT_TRUE(std::is_sorted(some.begin(), some.end()));
+  EXPECT_TRUE(std::includes(all.begin(), all.end(), some.begin(), some.end()));
+  // Even: the mean of a quarter of them lies where that of all lies.
+  const auto mean = [&](const std::vector<std::uint32_t>& positions) {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (const std::uint32_t i : positions) sum += scan.points[i];
+    return Eigen::Vector3f(sum / static_cast<float>(positions.size()));
+  };
+  EXPECT_LT((mean(all) - mean(some)).norm(), 0.4);
+}
+
 TEST(MatchingScan, RefusesBadInput) {
   Cloud bad;
   bad.points.emplace_back(0, 0, std::nanf(""));
@@ -119,12 +142,18 @@ TEST(MatchingScan, SelectsByPlaceNotByPosition) {
     return matching_scan(cloud, {.voxel = 0});
   };
   const MatchingScan scan = scan_of(points);
-  const auto chosen = scan.selection(500), again = scan_of(other).selection(500);
-  ASSERT_EQ(chosen.size(), 500u);
-  ASSERT_EQ(again.size(), 500u);
-  std::vector<std::uint32_t> shifted, common;
-  for (const std::uint32_t i : again) shifted.push_back(i + 1);
-  std::set_intersection(chosen.begin(), chosen.end(), shifted.begin(), shifted.end(),
+  const auto chosen = scan.selection(500);
+  const auto places = [](const MatchingScan& of, const std::vector<std::uint32_t>& positions) {
+    std::set<std::pair<float, float>> result;  // y and z, which stayed
+    for (const std::uint32_t i : positions) result.emplace(of.points[i].y(), of.points[i].z());
+    return result;
+  };
+  const MatchingScan other_scan = scan_of(other);
+  const auto first = places(scan, chosen), second = places(other_scan, other_scan.selection(500));
+  ASSERT_EQ(first.size(), 500u);
+  ASSERT_EQ(second.size(), 500u);
+  std::vector<std::pair<float, float>> common;
+  std::set_intersection(first.begin(), first.end(), second.begin(), second.end(),
                         std::back_inserter(common));
   EXPECT_GT(common.size(), 485u);
   EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));

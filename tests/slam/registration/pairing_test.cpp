@@ -43,6 +43,29 @@ TEST(Pairing, FindsTheNearestPointWhileTheSourceMoves) {
   }
 }
 
+TEST(Pairing, ANewSelectionPairsAsIfItWereTheFirst) {
+  const MatchingScan target = room_scan(Pose(Eigen::Translation3d(1.5, 1.5, 1)), 1);
+  const MatchingScan source = room_scan(Pose(Eigen::Translation3d(1.6, 1.5, 1)), 2);
+  std::mt19937 random(8);
+  PairFinder finder(source, target, source.selection(200));
+  for (const std::size_t most : {200u, 700u, 300u, 0u}) {
+    const auto selection = source.selection(most);
+    finder.select(selection);
+    ASSERT_EQ(finder.selected(), selection.size());
+    PairFinder fresh(source, target, selection);
+    for (int step = 0; step < 3; ++step) {
+      const Pose pose = testing::random_motion(random, 0.1, 0.03);
+      const auto pairs = finder.find(pose, Pairing::point_to_plane, wide),
+                 expected = fresh.find(pose, Pairing::point_to_plane, wide);
+      ASSERT_EQ(pairs.size(), expected.size());
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        EXPECT_EQ(pairs[i].source, expected[i].source);
+        EXPECT_EQ(pairs[i].target, expected[i].target);
+      }
+    }
+  }
+}
+
 TEST(Pairing, NeverPairsTheTwoSidesOfAThinWall) {
   // The same wall, 4 cm thick, seen from x = 0 and from x = 4.
   Cloud front, back;

@@ -126,7 +126,7 @@ void work(StageContext& context) {
 
 Stage register_stage() {
   return {.name = "register",
-          .version = 4,
+          .version = 5,
           .unit = "pairs",
           .needs = {"import"},
           .parameters = {"registration"},

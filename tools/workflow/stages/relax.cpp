@@ -123,7 +123,7 @@ void work(StageContext& context) {
 
 Stage relax_stage() {
   return {.name = "relax",
-          .version = 4,
+          .version = 5,
           .unit = "steps",
           .needs = {"import", "register"},
           .parameters = {"registration", "loops", "relaxation"},
