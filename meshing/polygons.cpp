@@ -15,6 +15,7 @@
 #include "meshing/plane_geometry.hpp"
 #include "meshing/polygon_drafts.hpp"
 #include "meshing/rest_surface.hpp"
+#include "meshing/surface_reduction.hpp"
 #include "slam/core/error.hpp"
 
 namespace planum {
@@ -40,6 +41,7 @@ void check(const TriangleMesh& mesh, const Regions& regions, const PolygonParams
   not_negative("max_gap", params.max_gap);
   not_negative("min_component", params.min_component);
   not_negative("min_hole", params.min_hole);
+  not_negative("rest_error", params.rest_error);
 }
 
 BorderNetwork border_network(TriangleMesh& mesh, Regions regions, HalfEdges& edges,
@@ -181,7 +183,15 @@ TriangleMesh mesh_of(const RestSurface& rest) {
   return mesh;
 }
 
-PolygonMap finished(BorderNetwork& network, RestSurface& rest, const DraftParams& params) {
+/// Takes vertices out of the rest that no polygon shares.
+void reduce(RestSurface& rest, std::size_t shared_points, double max_error) {
+  std::vector<bool> fixed(rest.points.size(), false);
+  std::fill_n(fixed.begin(), shared_points, true);
+  rest.triangles = reduced_surface(rest.points, rest.triangles, fixed, max_error);
+}
+
+PolygonMap finished(BorderNetwork& network, RestSurface& rest, const DraftParams& params,
+                    double rest_error) {
   std::copy_n(rest.points.begin(), network.corners.points.size(), network.corners.points.begin());
   MapBuilder builder(network.corners.points);
   for (const PolygonDraft& draft : polygon_drafts(network, params)) {
@@ -194,6 +204,7 @@ PolygonMap finished(BorderNetwork& network, RestSurface& rest, const DraftParams
       for (const auto& scrap : builder.add_made_valid(draft, plane, params.min_area))
         add_scrap(rest, scrap, plane);
   }
+  reduce(rest, network.corners.points.size(), rest_error);
   PolygonMap map = builder.built();
   map.rest = mesh_of(rest);
   return map;
@@ -208,6 +219,7 @@ PolygonParams polygon_params(double cell) {
   params.max_move *= scale;
   params.crease_reach *= scale;
   params.max_gap *= scale;
+  params.rest_error *= scale;
   params.min_component *= scale * scale;
   params.min_hole *= scale * scale;
   return params;
@@ -222,7 +234,7 @@ PolygonMap polygonize(const TriangleMesh& mesh, const Regions& regions,
   BorderNetwork network = border_network(whole, regions, edges, params);
   uncross_borders(network, draft_params, params.max_error);
   RestSurface rest = rest_surface(whole, edges, network.labels, network.corners, network.shapes);
-  return finished(network, rest, draft_params);
+  return finished(network, rest, draft_params, params.rest_error);
 }
 
 }  // namespace planum

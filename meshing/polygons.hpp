@@ -11,7 +11,9 @@ struct PolygonParams {
   double crease_reach = 0.05;   ///< m, triangles this near to a plane may join it to close a crease
   double max_gap = 0.13;        ///< m, narrower cracks and notches in the surface are closed
   double min_component = 0.02;  ///< m^2, smaller islands of a region join what is around them
-  double min_hole = 0.02;       ///< m^2, smaller holes in the surface inside a plane are closed
+  double rest_error = 0.01;  ///< m, of what is in no plane, where few triangles do for many; 0: all
+                             ///< triangles stay
+  double min_hole = 0.02;    ///< m^2, smaller holes in the surface inside a plane are closed
 };
 
 /// Parameters that suit a mesh with cells of this size (m).
@@ -22,8 +24,9 @@ PolygonParams polygon_params(double cell);
 /// borders between junctions are simplified once for both sides, so that neighbours share vertices.
 /// Each polygon is plane within half a millimetre, simple, and counter-clockwise seen from free
 /// space. Planes that do not meet near their common border get one each, with triangles in `rest`
-/// between them; the triangles that are in no region are there too. Throws Error for parameters out
-/// of range and for regions of another mesh.
+/// between them; the triangles that are in no region are there too, fewer where they are small
+/// beside what they bend (reduced_surface). Throws Error for parameters out of range and for
+/// regions of another mesh.
 PolygonMap polygonize(const TriangleMesh& mesh, const Regions& regions,
                       const PolygonParams& params = {});
 

@@ -19,7 +19,7 @@ const std::vector<Section>& project_sections() {
       {"loops", "scans that see the same place again"},
       {"relaxation", "all scans at once"},
       {"world", "the frame of all results"},
-      {"cloud", "normals"},
+      {"cloud", "normals, and what is no surface"},
       {"mesh", "triangles from the cloud"},
       {"polygons", "plane parts of the mesh"},
       {"labels", "what a polygon is"},
@@ -301,6 +301,13 @@ const std::vector<Key>& project_keys() {
        {1, 12},
        {},
        "where points are few, cells double so many times less one"},
+      {"cloud",
+       "free_space_scans",
+       FIELD(int, free_space.min_scans),
+       {0, 1000},
+       {},
+       "points that so many scans look through, and twice as many as saw them, are no surface; "
+       "0: all are"},
 
       {"mesh",
        "voxel_m",

@@ -5,6 +5,7 @@
 
 #include "labeling/labels.hpp"
 #include "labeling/rooms.hpp"
+#include "meshing/free_space.hpp"
 #include "meshing/normals.hpp"
 #include "meshing/surface.hpp"
 #include "slam/graph/loops.hpp"
@@ -62,6 +63,7 @@ struct Settings {
 
   bool level = true;
   NormalParams normals;
+  FreeSpaceParams free_space;
   SurfaceParams surface;
   PolygonSettings polygons;
   LabelParams labels;

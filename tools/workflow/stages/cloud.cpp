@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "meshing/free_space.hpp"
 #include "meshing/level_planes.hpp"
 #include "meshing/normals.hpp"
 #include "meshing/up_direction.hpp"
@@ -95,12 +96,28 @@ void write_poses(StageContext& context, const Imported& imported, const World& w
   write_all_frames(context.staging / "frames", imported, context.results.registered.get(), world);
 }
 
+/// What other scans looked through is in the cloud, but without a normal it makes no surface.
+/// Returns how many points these are.
+std::size_t drop_normals_in_free_space(Cloud& cloud, const World& world,
+                                       const FreeSpaceParams& params) {
+  const std::vector<std::uint8_t> free = in_free_space(cloud, scan_origins(world), params);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (!free[i]) continue;
+    cloud.normals[i].setZero();
+    ++count;
+  }
+  return count;
+}
+
 void work(StageContext& context) {
   const Imported& imported = context.results.imported.get();
   World world = unlevelled_world(imported, context.results.relaxed.get());
   Cloud cloud = consistent_cloud(imported, world);
   cloud.normals = estimate_normals(cloud, scan_origins(world), context.project.settings.normals,
                                    context.progress);
+  const std::size_t seen_through =
+      drop_normals_in_free_space(cloud, world, context.project.settings.free_space);
   if (context.project.settings.level && !level(world, cloud)) {
     context.record.warnings.push_back(
         "no floor or ceiling was found, so the world is not levelled");
@@ -108,9 +125,9 @@ void work(StageContext& context) {
   write_ply(context.staging / "cloud.ply", with_scan_numbers(cloud, world));
   write_poses(context, imported, world);
   write_result(context.result, world);
-  context.record.summary =
-      fmt::format("{} points, world turned by {:.2f} degrees to be level", cloud.points.size(),
-                  degrees(rotation_angle(world.world_from_input)));
+  context.record.summary = fmt::format(
+      "{} points, {} of them in free space; world turned by {:.2f} degrees to be level",
+      cloud.points.size(), seen_through, degrees(rotation_angle(world.world_from_input)));
   context.results.world.set(std::move(world));
   context.results.cloud.set(std::move(cloud));
 }
@@ -119,7 +136,7 @@ void work(StageContext& context) {
 
 Stage cloud_stage() {
   return {.name = "cloud",
-          .version = 2,
+          .version = 3,
           .unit = "steps",
           .needs = {"import", "register", "relax"},
           .parameters = {"world", "cloud"},

@@ -61,7 +61,7 @@ void work(StageContext& context) {
 
 Stage polygons_stage() {
   return {.name = "polygons",
-          .version = 2,
+          .version = 3,
           .unit = "steps",
           .needs = {"cloud", "mesh"},
           .parameters = {"polygons", "mesh.voxel_m"},
