@@ -1,6 +1,7 @@
 #include "meshing/surface.hpp"
 
 #include "meshing/distance_field.hpp"
+#include "meshing/loose_parts.hpp"
 #include "meshing/marching_cubes.hpp"
 #include "slam/core/error.hpp"
 
@@ -8,7 +9,9 @@ namespace planum {
 
 TriangleMesh reconstruct(const Cloud& cloud, const SurfaceParams& params,
                          const Progress& progress) {
-  TriangleMesh mesh = marching_cubes(distance_field(cloud, params, progress));
+  const double min_area = params.min_part * params.voxel * params.voxel;
+  TriangleMesh mesh =
+      without_loose_parts(marching_cubes(distance_field(cloud, params, progress)), min_area);
   if (mesh.triangles.empty())
     throw Error("mesh: no surface in the cloud: its points are too far apart for cells of " +
                     std::to_string(params.voxel) + " m",

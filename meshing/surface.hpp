@@ -12,6 +12,7 @@ struct SurfaceParams {
   double radius = 1.5;  ///< voxels, tangent planes are averaged this far along the surface
   double gap_reach =
       3;  ///< voxels, gaps between scan lines are closed up to twice this width; 0: none
+  double min_part = 2;  ///< squares of a voxel, smaller loose parts are specks, not surface
 };
 
 /// The surface through the points as triangles: signed distance on a sparse grid, then marching
