@@ -1,5 +1,6 @@
-// From the registered cloud of the classroom (true poses) to the mesh, by steps: medians of several
-// runs, then sizes, peak memory, and for 1, 2, 4 ... copies of the room how time grows with points.
+// From the registered cloud of the classroom (true poses) to labelled polygons, by steps: medians
+// of several runs, then sizes, peak memory, and for 1, 2, 4 ... copies of the room how time grows
+// with points. Usage: meshing_benchmark [COPIES]
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -9,10 +10,13 @@
 
 #include <fmt/format.h>
 
-#include "meshing/distance_field.hpp"
-#include "meshing/marching_cubes.hpp"
+#include "labeling/labels.hpp"
+#include "labeling/rooms.hpp"
+#include "meshing/free_space.hpp"
 #include "meshing/normals.hpp"
-#include "meshing/up_direction.hpp"
+#include "meshing/polygons.hpp"
+#include "meshing/surface.hpp"
+#include "meshing/triangulation.hpp"
 #include "slam/core/cloud.hpp"
 #include "slam/core/parallel.hpp"
 #include "slam/io/pose_list.hpp"
@@ -83,17 +87,30 @@ double peak_megabytes() {
 }
 
 void measure(Registered& data, int runs) {
-  DistanceField field;
+  const double voxel = SurfaceParams{}.voxel;
   TriangleMesh mesh;
-  const double normals = median_seconds(
-      runs, [&] { data.cloud.normals = estimate_normals(data.cloud, data.origins); });
-  const double up =
-      median_seconds(runs, [&] { estimate_up(data.cloud.normals, {}, Eigen::Vector3d::UnitZ()); });
-  const double distance = median_seconds(runs, [&] { field = distance_field(data.cloud); });
-  const double cubes = median_seconds(runs, [&] { mesh = marching_cubes(field); });
-  fmt::print("{:>10} {:>8.3f} {:>8.3f} {:>8.3f} {:>8.3f} {:>8.3f} {:>10} {:>10} {:>8.0f}\n",
-             data.cloud.points.size(), normals, up, distance, cubes,
-             normals + up + distance + cubes, mesh.vertices.size(), mesh.triangles.size(),
+  Regions planes;
+  PolygonMap map;
+  TriangulatedMap triangles;
+  RoomMap rooms;
+  const std::vector<std::function<void()>> steps = {
+      [&] { data.cloud.normals = estimate_normals(data.cloud, data.origins); },
+      [&] { in_free_space(data.cloud, data.origins); },
+      [&] { mesh = reconstruct(data.cloud); },
+      [&] { planes = grow_planes(mesh, data.cloud, region_params(voxel)); },
+      [&] { map = polygonize(mesh, planes, polygon_params(voxel)); },
+      [&] { triangles = triangulated(map); },
+      [&] { label(map); },
+      [&] { rooms = find_rooms(data.cloud, data.origins, map); }};
+  fmt::print("{:>10}", data.cloud.points.size());
+  double all = 0;
+  for (const auto& step : steps) {
+    const double seconds = median_seconds(runs, step);
+    all += seconds;
+    fmt::print(" {:>9.3f}", seconds);
+  }
+  fmt::print(" {:>9.3f} {:>9} {:>9} {:>9} {:>6} {:>8.0f}\n", all, mesh.triangles.size(),
+             map.polygons.size(), triangles.mesh.triangles.size(), rooms.rooms.size(),
              peak_megabytes());
 }
 
@@ -104,8 +121,12 @@ int main(int argc, char** argv) {
   Registered data = classroom();
   fmt::print("seconds on {} threads; peak memory holds the raw scans and the cloud too\n",
              thread_count());
-  fmt::print("{:>10} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10} {:>10} {:>8}\n", "points", "normals",
-             "up", "distance", "cubes", "all", "vertices", "triangles", "peak MB");
+  fmt::print("{:>10}", "points");
+  for (const char* step :
+       {"normals", "free", "mesh", "planes", "polygons", "triangles", "labels", "rooms", "all"})
+    fmt::print(" {:>9}", step);
+  fmt::print(" {:>9} {:>9} {:>9} {:>6} {:>8}\n", "mesh", "polygons", "triangles", "rooms",
+             "peak MB");
   measure(data, 5);
   for (int copies = 2; copies <= most_copies; copies *= 2) {
     Registered many = copied(data, copies);
