@@ -32,6 +32,11 @@ void check(const Cloud& cloud, std::span<const Eigen::Vector3d> origins,
   if (!(params.cell > 0)) fail("cell must be positive, is " + std::to_string(params.cell) + " m");
   if (!(params.margin >= 0))
     fail("margin must be at least 0, is " + std::to_string(params.margin) + " m");
+  if (!(params.margin_per_metre >= 0))
+    fail("margin_per_metre must be at least 0, is " + std::to_string(params.margin_per_metre));
+  if (!(params.max_tilt > 0 && params.max_tilt <= pi / 2))
+    fail("max_tilt must be between 0 and 90 degrees, is " +
+         std::to_string(degrees(params.max_tilt)));
   if (params.min_scans < 0)
     fail("min_scans must be at least 0, is " + std::to_string(params.min_scans));
   if (cloud.scan.empty()) {
@@ -75,13 +80,18 @@ class RangeMap {
     }
   }
 
-  /// Whether the rays about a place all end behind it by more than the margin.
-  bool looks_through(const Eigen::Vector3f& place, float margin) const {
+  /// Whether the rays about a place all end behind it by more than the margin. `normal` may be
+  /// zero.
+  bool looks_through(const Eigen::Vector3f& place, const Eigen::Vector3f& normal,
+                     const FreeSpaceParams& params) const {
     const Eigen::Vector3f way = place - origin_;
     const float squared = way.squaredNorm();
     if (squared >= farthest_ * farthest_ || squared == 0) return false;
-    const float free = ranges_[at(pixel_of(way, pixels_))];
-    return free != unseen && free > std::sqrt(squared) + margin;
+    const float free = ranges_[at(pixel_of(way, pixels_))], range = std::sqrt(squared);
+    const float margin = static_cast<float>(params.margin + params.margin_per_metre * range);
+    if (free == unseen || free <= range + margin) return false;
+    return normal.isZero(0) ||
+           std::abs(normal.dot(way)) >= static_cast<float>(std::cos(params.max_tilt)) * range;
   }
 
  private:
@@ -139,8 +149,9 @@ class RangeMap {
 struct CellPoints {
   std::uint32_t begin = 0, end = 0;  ///< in the order of the cells
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-  int scans = 0;    ///< that have a point in it
-  int through = 0;  ///< that look through it
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< mean, unit; zero where there is none
+  int scans = 0;                                     ///< that have a point in it
+  int through = 0;                                   ///< that look through it
 };
 
 std::vector<CellPoints> cells_of(const Cloud& cloud, std::span<const CellKey> keys,
@@ -157,9 +168,11 @@ std::vector<CellPoints> cells_of(const Cloud& cloud, std::span<const CellKey> ke
       scans.clear();
       for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
         cell.mean += cloud.points[order[i]];
+        if (!cloud.normals.empty()) cell.normal += cloud.normals[order[i]];
         scans.push_back(cloud.scan[order[i]]);
       }
       cell.mean /= static_cast<float>(cell.end - cell.begin);
+      if (!cell.normal.isZero(0)) cell.normal.normalize();
       std::sort(scans.begin(), scans.end());
       cell.scans = static_cast<int>(std::unique(scans.begin(), scans.end()) - scans.begin());
     }
@@ -186,7 +199,6 @@ std::vector<std::uint8_t> in_free_space(const Cloud& cloud,
   const CellSort sorted = sort_by_cell(keys);
   std::vector<CellPoints> cells = cells_of(cloud, keys, sorted.order);
   const auto own = points_of_scans(cloud, origins.size());
-  const float margin = static_cast<float>(params.margin);
   for (std::size_t first = 0; first < origins.size(); first += maps_at_once) {
     std::vector<RangeMap> maps(std::min(maps_at_once, origins.size() - first));
     parallel_for(maps.size(), 1, [&](std::size_t k, std::size_t) {
@@ -195,7 +207,7 @@ std::vector<std::uint8_t> in_free_space(const Cloud& cloud,
     parallel_for(cells.size(), cells_per_task, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k)
         for (const RangeMap& map : maps)
-          cells[k].through += map.looks_through(cells[k].mean, margin);
+          cells[k].through += map.looks_through(cells[k].mean, cells[k].normal, params);
     });
   }
   for (const CellPoints& cell : cells) {

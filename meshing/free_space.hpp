@@ -7,14 +7,19 @@
 #include <Eigen/Core>
 
 #include "slam/core/cloud.hpp"
+#include "slam/core/pose.hpp"
 
 namespace planum {
 
 /// When a point is not believed.
 struct FreeSpaceParams {
   double cell = 0.1;    ///< m, the points of one cell are judged together
-  double margin = 0.1;  ///< m, rays have to end so far behind a point to have gone through there
-  int min_scans = 2;    ///< of which scans rays went through; 0: all points are believed
+  double margin = 0.1;  ///< m, rays have to end so far behind a point to have gone through there,
+  double margin_per_metre =
+      0.02;                       ///< and by so much more for each metre: poses are a little turned
+  double max_tilt = radians(75);  ///< rad, rays that meet the surface flatter than this, where the
+                                  ///< cloud has normals, say nothing
+  int min_scans = 2;              ///< of which scans rays went through; 0: all points are believed
 };
 
 /// For each point whether it lies where other scans saw nothing: mixed pixels at the edges of

@@ -81,6 +81,28 @@ TEST(FreeSpace, OneContradictionIsNotEnough) {
       << "twice as many as saw it";
 }
 
+TEST(FreeSpace, PosesThatAreALittleOffDoNotDeleteSurfaces) {
+  // Each scan is turned by half a degree and moved by 3 cm before it is put into the cloud.
+  const auto poses = five_places();
+  TriangleMesh model = room();
+  testing::add_box(model, {3, 2, 0}, {4.4, 2.8, 0.75});
+  auto scene = testing::scanned(model, poses);
+  std::mt19937 random(9);
+  std::normal_distribution<double> off(0, 1);
+  std::vector<Pose> errors;
+  for (std::size_t s = 0; s < poses.size(); ++s)
+    errors.push_back(pose_from_xyz_ypr({0.03 * off(random), 0.03 * off(random), 0.03 * off(random)},
+                                       radians(0.5) * off(random), radians(0.5) * off(random),
+                                       radians(0.5) * off(random)));
+  for (std::size_t i = 0; i < scene.cloud.points.size(); ++i) {
+    const std::uint32_t s = scene.cloud.scan[i];
+    const Pose moved = poses[s] * errors[s] * poses[s].inverse();
+    scene.cloud.points[i] = (moved * scene.cloud.points[i].cast<double>()).cast<float>();
+    scene.cloud.normals.push_back((moved.linear() * scene.normals[i].cast<double>()).cast<float>());
+  }
+  EXPECT_LT(count(in_free_space(scene.cloud, scene.origins)), scene.cloud.points.size() / 2000);
+}
+
 TEST(FreeSpace, SparseScansSayLess) {
   // Slices six degrees apart: between them nothing is known to be free.
   testing::ScannerParams sparse;
@@ -115,6 +137,8 @@ TEST(FreeSpace, TakesLittleAndRefusesNonsense) {
   one.scan = {0};
   EXPECT_THROW(in_free_space(one, origins, {.cell = 0}), Error);
   EXPECT_THROW(in_free_space(one, origins, {.min_scans = -1}), Error);
+  EXPECT_THROW(in_free_space(one, origins, {.margin_per_metre = -1}), Error);
+  EXPECT_THROW(in_free_space(one, origins, {.max_tilt = 2}), Error);
   one.points[0].x() = std::nanf("");
   EXPECT_THROW(in_free_space(one, origins), Error);
 }

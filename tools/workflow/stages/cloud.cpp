@@ -136,7 +136,7 @@ void work(StageContext& context) {
 
 Stage cloud_stage() {
   return {.name = "cloud",
-          .version = 3,
+          .version = 4,
           .unit = "steps",
           .needs = {"import", "register", "relax"},
           .parameters = {"world", "cloud"},
