@@ -8,7 +8,6 @@ namespace planum {
 namespace {
 
 using Four = float __attribute__((vector_size(16)));
-using Sixteen = float __attribute__((vector_size(64)));
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float largest = std::numeric_limits<float>::max();
 
@@ -39,10 +38,11 @@ class KdSearch {
   /// Squared distances to all places of a bucket; infinite where there is no point.
   void distances(std::uint32_t leaf, Distances& squared) const {
     const KdTree::Bucket& bucket = bucket_of(leaf);
-    const Sixteen dx = std::bit_cast<Sixteen>(bucket.x) - query_[0],
-                  dy = std::bit_cast<Sixteen>(bucket.y) - query_[1],
-                  dz = std::bit_cast<Sixteen>(bucket.z) - query_[2];
-    squared = std::bit_cast<Distances>(dx * dx + dy * dy + dz * dz);
+    for (std::size_t i = 0; i < bucket_size; ++i) {
+      const float dx = bucket.x[i] - query_[0], dy = bucket.y[i] - query_[1],
+                  dz = bucket.z[i] - query_[2];
+      squared[i] = dx * dx + dy * dy + dz * dz;
+    }
   }
 
   /// A point by its place; the distance is what distances() has for it.
