@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "meshing/scan_indices.hpp"
 #include "meshing/voxel_blocks.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
@@ -39,14 +40,10 @@ void check(const Cloud& cloud, std::span<const Eigen::Vector3d> origins,
          std::to_string(degrees(params.max_tilt)));
   if (params.min_scans < 0)
     fail("min_scans must be at least 0, is " + std::to_string(params.min_scans));
-  if (cloud.scan.empty()) {
-    if (origins.size() > 1) fail("the points do not say which scan they are of");
-    return;
-  }
-  for (std::size_t i = 0; i < cloud.scan.size(); ++i)
-    if (cloud.scan[i] >= origins.size())
-      fail("point " + std::to_string(i) + " is of scan " + std::to_string(cloud.scan[i]) +
-           ", but " + std::to_string(origins.size()) + " origins are given");
+  check_scan_indices(cloud, origins.size(), "free space");
+  if (!cloud.normals.empty() && cloud.normals.size() != cloud.points.size())
+    fail(std::to_string(cloud.points.size()) + " points, but " +
+         std::to_string(cloud.normals.size()) + " normals");
 }
 
 /// A direction on one of the six faces of a cube around the scanner, row by row.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "meshing/scan_indices.hpp"
 #include "meshing/view_patches.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
@@ -21,20 +22,7 @@ void check(const Cloud& cloud, std::span<const Eigen::Vector3d> scan_origins,
     throw Error("normals: levels must be 1 to 10, is " + std::to_string(params.levels));
   if (scan_origins.empty())
     throw Error("normals: no scan origins: which side of a surface is free cannot be told");
-  if (cloud.scan.empty()) {
-    if (scan_origins.size() > 1)
-      throw Error("normals: " + std::to_string(scan_origins.size()) +
-                  " scan origins, but the points do not say which scan they are from");
-    return;
-  }
-  if (cloud.scan.size() != cloud.points.size())
-    throw Error("normals: " + std::to_string(cloud.points.size()) + " points, but " +
-                std::to_string(cloud.scan.size()) + " scan indices");
-  const auto highest = std::max_element(cloud.scan.begin(), cloud.scan.end());
-  if (highest != cloud.scan.end() && *highest >= scan_origins.size())
-    throw Error("normals: point " + std::to_string(highest - cloud.scan.begin()) +
-                " is from scan " + std::to_string(*highest) + ", but there are only " +
-                std::to_string(scan_origins.size()) + " scan origins");
+  check_scan_indices(cloud, scan_origins.size(), "normals");
 }
 
 /// Planes that points of one cell may belong to, those of one surface as one.

@@ -1,5 +1,7 @@
 #include "meshing/plane_geometry.hpp"
 
+#include <algorithm>
+
 #include <Eigen/Geometry>
 
 namespace planum {
@@ -32,6 +34,15 @@ bool is_inside(std::span<const Eigen::Vector2d> ring, const Eigen::Vector2d& poi
     inside ^= point.x() < a.x() + (point.y() - a.y()) * (b.x() - a.x()) / (b.y() - a.y());
   }
   return inside;
+}
+
+double squared_distance_to_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                                   const Eigen::Vector3d& b) {
+  const Eigen::Vector3d along = b - a;
+  const double length_squared = along.squaredNorm();
+  const double t =
+      length_squared > 0 ? std::clamp((p - a).dot(along) / length_squared, 0.0, 1.0) : 0.0;
+  return (p - a - t * along).squaredNorm();
 }
 
 }  // namespace planum

@@ -30,4 +30,8 @@ double signed_area(std::span<const Eigen::Vector2d> ring);
 /// Even-odd rule; what lies on the ring may be either.
 bool is_inside(std::span<const Eigen::Vector2d> ring, const Eigen::Vector2d& point);
 
+/// m^2, from a point to the nearest place between a and b.
+double squared_distance_to_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                                   const Eigen::Vector3d& b);
+
 }  // namespace planum

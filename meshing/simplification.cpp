@@ -3,17 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "meshing/plane_geometry.hpp"
+
 namespace planum {
 namespace {
-
-double squared_distance_to_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
-                                   const Eigen::Vector3d& b) {
-  const Eigen::Vector3d along = b - a;
-  const double length_squared = along.squaredNorm();
-  const double t =
-      length_squared > 0 ? std::clamp((p - a).dot(along) / length_squared, 0.0, 1.0) : 0.0;
-  return (p - a - t * along).squaredNorm();
-}
 
 /// The vertex strictly between two (wrapping around) that is farthest from the segment of the two
 /// in one of the lines, and the square of how far.

@@ -10,6 +10,8 @@
 
 #include <Eigen/Geometry>
 
+#include "meshing/plane_geometry.hpp"
+
 namespace planum {
 namespace {
 
@@ -56,13 +58,6 @@ double flatness(const Point& a, const Point& b, const Point& c) {
   const double longest =
       std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
   return longest > 0 ? normal_of(a, b, c).norm() / longest : 0;
-}
-
-double squared_distance_to_segment(const Point& p, const Point& a, const Point& b) {
-  const Point along = b - a;
-  const double length = along.squaredNorm();
-  const double t = length > 0 ? std::clamp(along.dot(p - a) / length, 0.0, 1.0) : 0;
-  return (p - a - t * along).squaredNorm();
 }
 
 double squared_distance(const Point& p, const Point& a, const Point& b, const Point& c) {

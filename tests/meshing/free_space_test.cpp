@@ -134,6 +134,8 @@ TEST(FreeSpace, TakesLittleAndRefusesNonsense) {
   EXPECT_EQ(count(in_free_space(one, origins)), 0u);
   one.scan = {2};
   EXPECT_THROW(in_free_space(one, origins), Error);
+  one.scan = {0, 0};
+  EXPECT_THROW(in_free_space(one, origins), Error);
   one.scan = {0};
   EXPECT_THROW(in_free_space(one, origins, {.cell = 0}), Error);
   EXPECT_THROW(in_free_space(one, origins, {.min_scans = -1}), Error);
