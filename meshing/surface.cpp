@@ -9,9 +9,13 @@ namespace planum {
 
 TriangleMesh reconstruct(const Cloud& cloud, const SurfaceParams& params,
                          const Progress& progress) {
-  const double min_area = params.min_part * params.voxel * params.voxel;
+  const double square = params.voxel * params.voxel;
   TriangleMesh mesh =
-      without_loose_parts(marching_cubes(distance_field(cloud, params, progress)), min_area);
+      without_loose_parts(marching_cubes(distance_field(cloud, params, progress)), cloud,
+                          {.min_area = params.min_part * square,
+                           .sure_area = params.sure_part * square,
+                           .min_density = params.min_points / square,
+                           .cell = params.voxel});
   if (mesh.triangles.empty())
     throw Error("mesh: no surface in the cloud: its points are too far apart for cells of " +
                     std::to_string(params.voxel) + " m",

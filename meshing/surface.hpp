@@ -12,7 +12,9 @@ struct SurfaceParams {
   double radius = 1.5;  ///< voxels, tangent planes are averaged this far along the surface
   double gap_reach =
       3;  ///< voxels, gaps between scan lines are closed up to twice this width; 0: none
-  double min_part = 2;  ///< squares of a voxel, smaller loose parts are specks, not surface
+  double min_part = 2;    ///< squares of a voxel, smaller loose parts are specks, not surface
+  double sure_part = 40;  ///< squares of a voxel, smaller loose parts have to be seen densely:
+  double min_points = 1;  ///< on the square of a voxel
 };
 
 /// The surface through the points as triangles: signed distance on a sparse grid, then marching

@@ -21,7 +21,7 @@ void work(StageContext& context) {
 
 Stage mesh_stage() {
   return {.name = "mesh",
-          .version = 2,
+          .version = 3,
           .unit = "steps",
           .needs = {"cloud"},
           .parameters = {"mesh"},
