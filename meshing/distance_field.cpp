@@ -127,7 +127,11 @@ DistanceField distance_field(const Cloud& cloud, const SurfaceParams& params,
                              const Progress& progress) {
   check(cloud, params);
   SurfacePatches patches = without_strays(surface_patches(cloud, params.voxel));
-  if (patches.patches.empty()) throw Error("mesh: no point has a normal", ErrorKind::no_result);
+  if (patches.patches.empty())
+    throw Error(
+        "mesh: no point has a normal: nowhere do points lie around each other on a surface (are "
+        "they in metres, and more than a line of them?)",
+        ErrorKind::no_result);
   patches = with_gaps_filled(std::move(patches), params.gap_reach);
   DistanceField field;
   field.lattice = patches.lattice;

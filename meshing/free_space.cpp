@@ -214,4 +214,19 @@ std::vector<std::uint8_t> in_free_space(const Cloud& cloud,
   return result;
 }
 
+std::size_t drop_normals_in_free_space(Cloud& cloud, std::span<const Eigen::Vector3d> scan_origins,
+                                       const FreeSpaceParams& params) {
+  if (cloud.normals.size() != cloud.points.size())
+    throw Error("free space: " + std::to_string(cloud.points.size()) + " points, but " +
+                std::to_string(cloud.normals.size()) + " normals");
+  const std::vector<std::uint8_t> free = in_free_space(cloud, scan_origins, params);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (!free[i]) continue;
+    cloud.normals[i].setZero();
+    ++count;
+  }
+  return count;
+}
+
 }  // namespace planum

@@ -35,4 +35,9 @@ std::vector<std::uint8_t> in_free_space(const Cloud& cloud,
                                         std::span<const Eigen::Vector3d> scan_origins,
                                         const FreeSpaceParams& params = {});
 
+/// Takes the normals of points in free space away, so that they stay in the cloud but make no
+/// surface. Returns how many these are.
+std::size_t drop_normals_in_free_space(Cloud& cloud, std::span<const Eigen::Vector3d> scan_origins,
+                                       const FreeSpaceParams& params = {});
+
 }  // namespace planum

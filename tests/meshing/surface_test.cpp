@@ -238,7 +238,10 @@ TEST(Surface, SaysWhatIsWrongWithTheInput) {
   cloud.normals.clear();
   EXPECT_EQ(message_of(cloud), "mesh: 1000 points, but 0 normals");
   cloud.normals.assign(1000, Vector3f::Zero());
-  EXPECT_EQ(message_of(cloud), "mesh: no point has a normal");
+  EXPECT_EQ(
+      message_of(cloud),
+      "mesh: no point has a normal: nowhere do points lie around each other on a surface (are "
+      "they in metres, and more than a line of them?)");
   cloud = sphere(0.8, 1000);
   EXPECT_EQ(message_of(cloud, {.voxel = 0}).substr(0, 30), "mesh: voxel must be above 0, i");
   cloud.points[17].y() = std::numeric_limits<float>::infinity();

@@ -20,10 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* formats =
-    "Points:        .slices .txt (slices) .3d .xyz .ply  ->  .3d .xyz .ply\n"
-    "Meshes:        .obj .ply                            ->  .obj .ply\n"
-    "Trajectories:  .tum .g2o                            ->  .tum\n"
-    "A .slices file becomes points in the frame of the scanner.";
+    "Points:        .slices .3d .ply .vtk .xyz .pts .asc .dat .txt  ->  .3d .xyz .ply\n"
+    "Meshes:        .obj .ply                                       ->  .obj .ply\n"
+    "Trajectories:  .tum .g2o                                       ->  .tum\n"
+    "A .slices file becomes points in the frame of the scanner; .txt holds slices or points.";
 
 bool has_faces(const fs::path& file) {
   return read_file(file, 4096).find("element face") != std::string::npos;

@@ -4,6 +4,7 @@
 
 #include "labeling/labels.hpp"
 #include "labeling/rooms.hpp"
+#include "meshing/free_space.hpp"
 #include "meshing/normals.hpp"
 #include "meshing/polygons.hpp"
 #include "meshing/surface.hpp"
@@ -12,18 +13,21 @@
 #include "slam/core/parallel.hpp"
 #include "slam/io/ply.hpp"
 #include "slam/io/tum.hpp"
+#include "slam/sensor/range_limits.hpp"
 #include "tools/maps/map_mesh.hpp"
 #include "tools/maps/polygons_json.hpp"
 #include "tools/planum/arguments.hpp"
 #include "tools/planum/cli11.hpp"
 #include "tools/planum/commands.hpp"
 #include "tools/planum/console.hpp"
+#include "tools/planum/scan_file.hpp"
 
 namespace planum {
 namespace {
 
 struct PolygonizeArguments {
   std::filesystem::path cloud, origins, output;
+  std::vector<double> origin;  ///< m, x y z; empty: not given
   SurfaceParams surface;
   WorkArguments work;
 };
@@ -34,12 +38,37 @@ struct SeenCloud {
   std::vector<Eigen::Vector3d> origins;
 };
 
+/// The points of a file that are points: scanners write nan, inf or zero for beams that met
+/// nothing.
+Cloud read_cloud(const std::filesystem::path& file, Console& console) {
+  const std::optional<Cloud> read = read_points_file(file);
+  if (!read)
+    throw Error(file.string() +
+                ": no file of points by its ending; there are .ply .3d .xyz .pts .asc .dat .txt "
+                ".vtk and .slices");
+  if (read->points.empty()) throw Error(file.string() + ": there are no points in it");
+  ImportedScan finite = limited(*read, {.min_range = 0, .max_range = 0, .max_not_finite = 1});
+  if (finite.cloud.points.empty()) throw Error(file.string() + ": not one of its points is finite");
+  if (const std::size_t lost = finite.counts.not_finite; lost > 0)
+    console.warn(fmt::format("{}: {} of {} points are not finite and are left out", file.string(),
+                             lost, read->points.size()));
+  for (Eigen::Vector3f& normal : finite.cloud.normals)
+    if (!normal.allFinite()) normal.setZero();
+  return std::move(finite.cloud);
+}
+
 /// The scans of a cloud go by the first column of the trajectory. Without one, a scanner at the
-/// origin saw everything.
-SeenCloud read_seen_cloud(const PolygonizeArguments& arguments) {
-  SeenCloud seen{read_ply_cloud(arguments.cloud), {}};
+/// origin of the frame, or at the place given, saw everything.
+SeenCloud read_seen_cloud(const PolygonizeArguments& arguments, Console& console) {
+  SeenCloud seen{read_cloud(arguments.cloud, console), {}};
   if (arguments.origins.empty()) {
     seen.origins = {Eigen::Vector3d::Zero()};
+    if (!arguments.origin.empty())
+      seen.origins = {Eigen::Vector3d::Map(arguments.origin.data())};
+    else if (seen.cloud.normals.empty())
+      console.warn(
+          "nobody says where the scanner stood (--origin, --origins): it is taken to be at 0 0 0, "
+          "and surfaces face that place");
     seen.cloud.scan.clear();
     return seen;
   }
@@ -66,10 +95,11 @@ SeenCloud read_seen_cloud(const PolygonizeArguments& arguments) {
 void polygonize_command(const PolygonizeArguments& arguments) {
   set_thread_count(arguments.work.threads);
   Console console(arguments.work.quiet);
-  auto [cloud, origins] = read_seen_cloud(arguments);
+  auto [cloud, origins] = read_seen_cloud(arguments, console);
   if (cloud.normals.empty()) {
     cloud.normals = estimate_normals(cloud, origins, {}, console.start_bar("normals", "points"));
   }
+  drop_normals_in_free_space(cloud, origins);
   const TriangleMesh mesh =
       reconstruct(cloud, arguments.surface, console.start_bar("mesh", "cells"));
   console.end_bar();
@@ -96,12 +126,20 @@ void add_polygonize_command(CLI::App& app) {
   const auto arguments = std::make_shared<PolygonizeArguments>();
   CLI::App* command =
       app.add_subcommand("polygonize", "a polygon map of a registered cloud, without a project");
-  command->add_option("CLOUD", arguments->cloud, "a .ply file, in metres")->required();
+  command
+      ->add_option("CLOUD", arguments->cloud,
+                   "points in metres: .ply .3d .xyz .pts .asc .dat .txt .vtk .slices")
+      ->required();
   command
       ->add_option("--origins", arguments->origins,
-                   "a .tum file: where the scans of the cloud's `scan` property were taken; "
-                   "without it the scanner stood at the origin")
+                   "a .tum file: where the scans of the cloud's `scan` property were taken")
       ->type_name("TRAJECTORY");
+  command
+      ->add_option("--origin", arguments->origin,
+                   "where the scanner stood, in metres, if one place saw all")
+      ->type_name("X Y Z")
+      ->expected(3)
+      ->excludes("--origins");
   command->add_option("--out", arguments->output, "directory for the map")
       ->type_name("DIR")
       ->required();

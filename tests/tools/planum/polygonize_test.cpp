@@ -1,3 +1,4 @@
+#include <fstream>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -82,6 +83,61 @@ TEST_F(Polygonize, WantsToKnowWhichPlaceSawAPoint) {
   EXPECT_SAYS(outcome.err, "points do not know their scan");
   outcome = planum_({"polygonize", "cloud.ply", "--origins", "one.tum", "--out", "map"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
+TEST_F(Polygonize, TakesOnePlaceAndSaysWhichItAssumes) {
+  Cloud cloud = room_cloud(0, 0);
+  cloud.scan.clear();
+  for (Eigen::Vector3f& p : cloud.points) p += Eigen::Vector3f(10, 20, 30);
+  write_ply(directory_ / "cloud.ply", cloud);
+  Outcome outcome = planum_({"polygonize", "cloud.ply", "--out", "map"});
+  EXPECT_SAYS(outcome.err, "it is taken to be at 0 0 0");
+  outcome = planum_({"polygonize", "cloud.ply", "--origin", "12", "21.5", "31.25", "--out", "map"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const auto map = nlohmann::json::parse(file_text(directory_ / "map" / "polygons.json"));
+  double area = 0;
+  for (const auto& polygon : map["polygons"]) {
+    area += polygon["area_m2"].get<double>();
+    const auto normal = polygon["plane"]["normal"].get<std::vector<double>>();
+    EXPECT_GT(normal[0] * 12 + normal[1] * 21.5 + normal[2] * 31.25, polygon["plane"]["offset"]);
+  }
+  EXPECT_NEAR(area, 59, 0.25);
+}
+
+TEST_F(Polygonize, ReadsPointsOfAnyFormatAndLeavesOutWhatIsNotFinite) {
+  const Cloud cloud = room_cloud(0, 0);
+  std::string text = "nan nan nan\n1e9 1e9 1e9\n";
+  for (const Eigen::Vector3f& p : cloud.points)
+    text +=
+        std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + "\n";
+  std::ofstream(directory_ / "cloud.pts") << text;
+  const Outcome outcome =
+      planum_({"polygonize", "cloud.pts", "--origin", "2", "1.5", "1.2", "--out", "map"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_SAYS(outcome.err, "cloud.pts: 1 of 72002 points are not finite and are left out");
+  const auto map = nlohmann::json::parse(file_text(directory_ / "map" / "polygons.json"));
+  EXPECT_EQ(map["polygons"].size(), 6u);
+}
+
+TEST_F(Polygonize, SaysWhatIsWrongWithACloud) {
+  const auto error_of = [&](const std::string& name, const std::string& text) {
+    std::ofstream(directory_ / name) << text;
+    const Outcome outcome = planum_({"polygonize", name, "--out", "map"});
+    EXPECT_NE(outcome.exit_code, 0);
+    EXPECT_FALSE(std::filesystem::exists(directory_ / "map"));
+    return outcome.err;
+  };
+  EXPECT_SAYS(error_of("a.xyz", ""), "a.xyz: there are no points in it");
+  EXPECT_SAYS(error_of("a.xyz", "nan 0 0\n0 inf 0\n"), "a.xyz: not one of its points is finite");
+  EXPECT_SAYS(error_of("a.doc", "1 2 3\n"), "a.doc: no file of points by its ending");
+  std::string equal, line;
+  for (int i = 0; i < 1000; ++i) {
+    equal += "1 2 3\n";
+    line += std::to_string(0.001 * i) + " 0 0\n";
+  }
+  EXPECT_SAYS(error_of("a.xyz", equal), "no point has a normal: nowhere do points lie around");
+  EXPECT_SAYS(error_of("a.xyz", line), "no point has a normal: nowhere do points lie around");
 }
 
 }  // namespace

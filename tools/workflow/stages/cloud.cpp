@@ -96,20 +96,6 @@ void write_poses(StageContext& context, const Imported& imported, const World& w
   write_all_frames(context.staging / "frames", imported, context.results.registered.get(), world);
 }
 
-/// What other scans looked through is in the cloud, but without a normal it makes no surface.
-/// Returns how many points these are.
-std::size_t drop_normals_in_free_space(Cloud& cloud, const World& world,
-                                       const FreeSpaceParams& params) {
-  const std::vector<std::uint8_t> free = in_free_space(cloud, scan_origins(world), params);
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    if (!free[i]) continue;
-    cloud.normals[i].setZero();
-    ++count;
-  }
-  return count;
-}
-
 void work(StageContext& context) {
   const Imported& imported = context.results.imported.get();
   World world = unlevelled_world(imported, context.results.relaxed.get());
@@ -117,7 +103,7 @@ void work(StageContext& context) {
   cloud.normals = estimate_normals(cloud, scan_origins(world), context.project.settings.normals,
                                    context.progress);
   const std::size_t seen_through =
-      drop_normals_in_free_space(cloud, world, context.project.settings.free_space);
+      drop_normals_in_free_space(cloud, scan_origins(world), context.project.settings.free_space);
   if (context.project.settings.level && !level(world, cloud)) {
     context.record.warnings.push_back(
         "no floor or ceiling was found, so the world is not levelled");
