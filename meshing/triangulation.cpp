@@ -92,6 +92,13 @@ TriangulatedMap triangulated(const PolygonMap& map) {
     result.mesh.triangles.push_back({name[t[0]], name[t[1]], name[t[2]]});
     result.polygon.push_back(TriangulatedMap::rest);
   }
+  result.inferred.assign(result.polygon.size(), 0);
+  for (const InferredPatch& patch : map.inferred)
+    for (const Triangle& t : triangles_of(patch.shape, map.vertices)) {
+      result.mesh.triangles.push_back(t);
+      result.polygon.push_back(patch.polygon);
+      result.inferred.push_back(1);
+    }
   return result;
 }
 

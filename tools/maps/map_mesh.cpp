@@ -41,13 +41,14 @@ std::string material_text(const std::string& material, const Colour& colour) {
 void write_map_ply(const std::filesystem::path& path, const TriangulatedMap& mesh,
                    const Labels& labels) {
   MeshAttributes attributes;
-  attributes.triangle_properties = {{"label", {}}, {"polygon", {}}};
+  attributes.triangle_properties = {{"label", {}}, {"polygon", {}}, {"inferred", {}}};
   for (const PolygonLabel* label : labels_of_triangles(mesh, labels)) {
     attributes.triangle_colours.push_back(label ? colour_of(label->label) : colour_of_rest());
     attributes.triangle_properties[0].values.push_back(label ? static_cast<int>(label->label) : -1);
   }
   for (const std::uint32_t polygon : mesh.polygon)  // `rest` is -1
     attributes.triangle_properties[1].values.push_back(static_cast<std::int32_t>(polygon));
+  attributes.triangle_properties[2].values.assign(mesh.inferred.begin(), mesh.inferred.end());
   write_ply(path, mesh.mesh, attributes);
 }
 

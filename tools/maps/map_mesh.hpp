@@ -8,7 +8,8 @@
 namespace planum {
 
 /// Writes the map as triangles: label colours, and for each triangle `label` (the number of the
-/// label, -1 for what is no polygon) and `polygon` (its id, or -1).
+/// label, -1 for what is no polygon), `polygon` (its id, or -1) and `inferred` (1: a laser shadow
+/// that was filled).
 void write_map_ply(const std::filesystem::path& path, const TriangulatedMap& mesh,
                    const Labels& labels);
 

@@ -22,6 +22,26 @@ void append_ring(std::string& text, const Ring& ring) {
   text += ']';
 }
 
+void append_rings(std::string& text, const MapPolygon& polygon) {
+  text += "\"outer\":";
+  append_ring(text, polygon.outer);
+  text += ",\"holes\":[";
+  for (std::size_t i = 0; i < polygon.holes.size(); ++i) {
+    if (i) text += ',';
+    append_ring(text, polygon.holes[i]);
+  }
+  fmt::format_to(Text(text), "],\"area_m2\":{:.6f}", polygon.area);
+}
+
+void append_inferred(std::string& text, const PolygonMap& map) {
+  text += "],\n\"inferred\":[";
+  for (std::size_t i = 0; i < map.inferred.size(); ++i) {
+    fmt::format_to(Text(text), "{}\n{{\"polygon\":{},", i ? "," : "", map.inferred[i].polygon);
+    append_rings(text, map.inferred[i].shape);
+    text += '}';
+  }
+}
+
 void append_polygon(std::string& text, std::size_t id, const LabelledMap& map) {
   const MapPolygon& polygon = map.map.polygons[id];
   const PolygonLabel& label = map.labels.polygons[id];
@@ -29,15 +49,10 @@ void append_polygon(std::string& text, std::size_t id, const LabelledMap& map) {
   fmt::format_to(
       Text(text),
       "{{\"id\":{},\"label\":\"{}\",\"confidence\":{:.3f},\"plane\":{{\"normal\":[{:.9f},"
-      "{:.9f},{:.9f}],\"offset\":{:.6f}}},\"outer\":",
+      "{:.9f},{:.9f}],\"offset\":{:.6f}}},",
       id, name(label.label), label.confidence, n.x(), n.y(), n.z(), polygon.plane.offset);
-  append_ring(text, polygon.outer);
-  text += ",\"holes\":[";
-  for (std::size_t i = 0; i < polygon.holes.size(); ++i) {
-    if (i) text += ',';
-    append_ring(text, polygon.holes[i]);
-  }
-  fmt::format_to(Text(text), "],\"area_m2\":{:.6f},\"room\":", polygon.area);
+  append_rings(text, polygon);
+  text += ",\"room\":";
   const auto& rooms = map.rooms.room_of_polygon;
   const std::int32_t room = rooms.empty() ? -1 : rooms[id];
   text += room < 0 ? "null" : nlohmann::json(map.rooms.rooms[std::size_t(room)].name).dump();
@@ -62,6 +77,7 @@ void write_polygons_json(const std::filesystem::path& path, const LabelledMap& m
     text += id ? ",\n" : "\n";
     append_polygon(text, id, map);
   }
+  append_inferred(text, map.map);
   text += "],\n\"rooms\":" + rooms_json(map.rooms).dump();
   text += ",\n\"openings\":" + openings_json(map.rooms).dump() + "}\n";
   write_file_atomically(path, text);

@@ -5,6 +5,7 @@
 #include "labeling/labels.hpp"
 #include "labeling/rooms.hpp"
 #include "meshing/free_space.hpp"
+#include "meshing/laser_shadows.hpp"
 #include "meshing/normals.hpp"
 #include "meshing/polygons.hpp"
 #include "meshing/surface.hpp"
@@ -105,7 +106,8 @@ void polygonize_command(const PolygonizeArguments& arguments) {
   console.end_bar();
   const double voxel = arguments.surface.voxel;
   const Regions regions = grow_planes(mesh, cloud, region_params(voxel));
-  const PolygonMap map = polygonize(mesh, regions, polygon_params(voxel));
+  const PolygonMap map =
+      with_shadows_filled(polygonize(mesh, regions, polygon_params(voxel)), cloud, origins);
   const Labels labels = label(map);
   RoomMap no_rooms;
   no_rooms.room_of_polygon.assign(map.polygons.size(), -1);

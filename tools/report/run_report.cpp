@@ -95,6 +95,7 @@ Json polygons_json(const PolygonFigures& polygons) {
   return {{"count", polygons.count},
           {"vertices", polygons.vertices},
           {"area_m2", polygons.area},
+          {"inferred_area_m2", polygons.inferred_area},
           {"rest_triangles", polygons.rest_triangles},
           {"compression", polygons.compression}};
 }

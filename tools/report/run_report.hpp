@@ -84,7 +84,8 @@ struct MeshFigures {
 
 struct PolygonFigures {
   std::size_t count = 0, vertices = 0;
-  double area = 0;  ///< m^2
+  double area = 0;           ///< m^2
+  double inferred_area = 0;  ///< m^2, of filled laser shadows
   std::size_t rest_triangles = 0;
   double compression = 0;  ///< share of the mesh's triangles that the map does without, in [0, 1]
 };

@@ -43,6 +43,7 @@ PolygonFigures polygon_figures(const PolygonMap& map, const TriangleMesh& mesh) 
   figures.count = map.polygons.size();
   figures.vertices = map.vertices.size();
   for (const MapPolygon& polygon : map.polygons) figures.area += polygon.area;
+  for (const InferredPatch& patch : map.inferred) figures.inferred_area += patch.shape.area;
   figures.rest_triangles = map.rest.triangles.size();
   const auto left = static_cast<double>(triangulated(map).mesh.triangles.size());
   if (!mesh.triangles.empty()) {

@@ -6,6 +6,7 @@
 #include "labeling/labels.hpp"
 #include "labeling/rooms.hpp"
 #include "meshing/free_space.hpp"
+#include "meshing/laser_shadows.hpp"
 #include "meshing/normals.hpp"
 #include "meshing/surface.hpp"
 #include "slam/graph/loops.hpp"
@@ -66,6 +67,7 @@ struct Settings {
   FreeSpaceParams free_space;
   SurfaceParams surface;
   PolygonSettings polygons;
+  ShadowParams shadows;
   LabelParams labels;
   RoomParams rooms;
 

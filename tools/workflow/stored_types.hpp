@@ -97,8 +97,13 @@ void fields(Archive& archive, MapPolygon& polygon) {
 }
 
 template <class Archive>
+void fields(Archive& archive, InferredPatch& patch) {
+  archive(patch.polygon, patch.shape);
+}
+
+template <class Archive>
 void fields(Archive& archive, PolygonMap& map) {
-  archive(map.vertices, map.polygons, map.rest);
+  archive(map.vertices, map.polygons, map.rest, map.inferred);
 }
 
 template <class Archive>

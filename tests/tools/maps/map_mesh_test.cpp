@@ -29,7 +29,7 @@ using testing::TemporaryDirectory;
 struct Face {
   std::array<std::int32_t, 3> corners;
   Colour colour;
-  std::int32_t label, polygon;
+  std::int32_t label, polygon, inferred;
 };
 
 /// map.ply by docs/formats.md alone, without the reader of the library.
@@ -41,9 +41,10 @@ std::vector<Face> faces_of_ply(const std::filesystem::path& path, std::size_t ve
       "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
       std::to_string(faces) +
       "\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\n"
-      "property uchar blue\nproperty int label\nproperty int polygon\nend_header\n";
+      "property uchar blue\nproperty int label\nproperty int polygon\n"
+      "property int inferred\nend_header\n";
   EXPECT_EQ(text.substr(0, header.size()), header);
-  constexpr std::size_t row = 1 + 12 + 3 + 4 + 4;
+  constexpr std::size_t row = 1 + 12 + 3 + 4 + 4 + 4;
   EXPECT_EQ(text.size(), header.size() + 12 * vertices + row * faces);
   if (::testing::Test::HasFailure()) return {};
   std::vector<Face> result(faces);
@@ -54,6 +55,7 @@ std::vector<Face> faces_of_ply(const std::filesystem::path& path, std::size_t ve
     std::memcpy(face.colour.data(), at + 13, 3);
     std::memcpy(&face.label, at + 16, 4);
     std::memcpy(&face.polygon, at + 20, 4);
+    std::memcpy(&face.inferred, at + 24, 4);
     at += row;
   }
   return result;
@@ -81,6 +83,7 @@ TEST(MapMesh, PlyHasTheAreaOfEveryPolygonUnderItsLabel) {
     for (const std::size_t k : {0, 1, 2})
       EXPECT_EQ(static_cast<std::uint32_t>(face.corners[k]), mesh.triangles[i][k]);
     area[face.polygon] += area_of(mesh, i);
+    EXPECT_EQ(face.inferred, 0);
     if (face.polygon < 0) {
       EXPECT_EQ(face.polygon, -1);
       EXPECT_EQ(face.label, -1);
@@ -130,6 +133,21 @@ std::map<std::string, Vector3d> materials_in(const std::filesystem::path& path) 
     }
   }
   return found;
+}
+
+TEST(MapMesh, PlyMarksFilledShadowsWithTheLabelOfTheirPlane) {
+  const TemporaryDirectory directory;
+  SmallMap small = small_map();
+  MapPolygon shape = small.map.polygons[1];
+  shape.outer.pop_back();
+  small.map.inferred = {{.polygon = 1, .shape = shape}};
+  write_map_ply(directory / "map.ply", triangulated(small.map), small.labels);
+  const std::vector<Face> faces = faces_of_ply(directory / "map.ply", 16, 8 + 9 * 2 + 2 + 1);
+  ASSERT_EQ(faces.size(), 29u);
+  EXPECT_EQ(faces.back().inferred, 1);
+  EXPECT_EQ(faces.back().polygon, 1);
+  EXPECT_EQ(faces.back().label, static_cast<int>(small.labels.polygons[1].label));
+  EXPECT_EQ(faces[27].inferred, 0);
 }
 
 TEST(MapMesh, ObjSaysTheSameAsPly) {

@@ -60,8 +60,8 @@ Vector3d area_vector(const Json& file, const Ring& ring) {
 
 /// What docs/formats-results.md promises for every file; tolerance in metres.
 void expect_laws(const Json& file, double tolerance) {
-  EXPECT_EQ(keys(file),
-            (std::set<std::string>{"version", "vertices", "polygons", "rooms", "openings"}));
+  EXPECT_EQ(keys(file), (std::set<std::string>{"version", "vertices", "polygons", "inferred",
+                                               "rooms", "openings"}));
   EXPECT_EQ(file["version"], 1);
   std::set<std::uint32_t> used;
   for (std::size_t id = 0; id < file["polygons"].size(); ++id) {
@@ -112,6 +112,21 @@ TEST(PolygonsJson, KeepsItsLawsForAPolygonizedScene) {
   for (const Json& polygon : file["polygons"]) holes += polygon["holes"].size();
   EXPECT_EQ(holes, 3u);
   expect_laws(file, 6e-4);
+}
+
+TEST(PolygonsJson, HasFilledShadowsBesideThePolygons) {
+  SmallMap small = small_map();
+  MapPolygon shape = small.map.polygons[2];
+  shape.area = 1.25;
+  small.map.inferred = {{.polygon = 2, .shape = shape}};
+  const Json file = written(small.labelled());
+  ASSERT_EQ(file["inferred"].size(), 1u);
+  const Json& patch = file["inferred"][0];
+  EXPECT_EQ(keys(patch), (std::set<std::string>{"polygon", "outer", "holes", "area_m2"}));
+  EXPECT_EQ(patch["polygon"], 2);
+  EXPECT_EQ(patch["outer"], file["polygons"][2]["outer"]);
+  EXPECT_EQ(patch["area_m2"], 1.25);
+  expect_laws(file, 1e-6);
 }
 
 TEST(PolygonsJson, NeighboursShareVerticesAndRunOppositeWays) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "meshing/laser_shadows.hpp"
 #include "meshing/regions.hpp"
 #include "slam/core/error.hpp"
 #include "tools/workflow/results.hpp"
@@ -32,8 +33,9 @@ std::string summary(const PolygonMap& map) {
     holes += polygon.holes.size();
     area += polygon.area;
   }
-  return fmt::format("{} polygons with {} holes, {:.1f} m2, {} triangles in no plane",
-                     map.polygons.size(), holes, area, map.rest.triangles.size());
+  return fmt::format(
+      "{} polygons with {} holes, {:.1f} m2, {} triangles in no plane, {} shadows filled",
+      map.polygons.size(), holes, area, map.rest.triangles.size(), map.inferred.size());
 }
 
 void work(StageContext& context) {
@@ -44,7 +46,9 @@ void work(StageContext& context) {
   const Regions regions =
       grow_planes(mesh, context.results.cloud.get(), chosen_region_params(settings));
   context.progress.report(1, steps);
-  PolygonMap map = polygonize(mesh, regions, chosen_polygon_params(settings));
+  PolygonMap map = with_shadows_filled(polygonize(mesh, regions, chosen_polygon_params(settings)),
+                                       context.results.cloud.get(),
+                                       scan_origins(context.results.world.get()), settings.shadows);
   context.progress.report(2, steps);
   if (map.polygons.empty()) {
     throw Error(
@@ -61,7 +65,7 @@ void work(StageContext& context) {
 
 Stage polygons_stage() {
   return {.name = "polygons",
-          .version = 3,
+          .version = 4,
           .unit = "steps",
           .needs = {"cloud", "mesh"},
           .parameters = {"polygons", "mesh.voxel_m"},
