@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "meshing/border_lenses.hpp"
 #include "meshing/border_repair.hpp"
 #include "meshing/components.hpp"
 #include "meshing/creases.hpp"
@@ -183,6 +184,30 @@ TriangleMesh mesh_of(const RestSurface& rest) {
   return mesh;
 }
 
+/// Triangles that lie on each other and face opposite ways enclose nothing; of those that face the
+/// same way one is enough.
+void drop_folded_pairs(RestSurface& rest) {
+  std::map<std::array<std::uint32_t, 3>, int> sides;  // by corners, the least first
+  const auto turned = [](const std::array<std::uint32_t, 3>& t) {
+    std::array<std::uint32_t, 3> key = t;
+    std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
+    const bool is_even = key[1] < key[2];
+    if (!is_even) std::swap(key[1], key[2]);
+    return std::pair(key, is_even ? 1 : -1);
+  };
+  for (const auto& t : rest.triangles) {
+    const auto [key, side] = turned(t);
+    sides[key] += side;
+  }
+  std::erase_if(rest.triangles, [&](const auto& t) {
+    const auto [key, side] = turned(t);
+    int& left = sides[key];
+    if (left * side <= 0) return true;
+    left = 0;
+    return false;
+  });
+}
+
 /// Takes vertices out of the rest that no polygon shares.
 void reduce(RestSurface& rest, std::size_t shared_points, double max_error) {
   std::vector<bool> fixed(rest.points.size(), false);
@@ -204,9 +229,11 @@ PolygonMap finished(BorderNetwork& network, RestSurface& rest, const DraftParams
       for (const auto& scrap : builder.add_made_valid(draft, plane, params.min_area))
         add_scrap(rest, scrap, plane);
   }
+  drop_folded_pairs(rest);
   reduce(rest, network.corners.points.size(), rest_error);
   PolygonMap map = builder.built();
   map.rest = mesh_of(rest);
+  close_lenses(map, params.min_area);
   return map;
 }
 

@@ -52,6 +52,9 @@ void expect_laws(const PolygonMap& map) {
         EXPECT_LT(std::abs(polygon.plane.signed_distance(map.vertices[v])), 6e-4);
     }
   }
+  std::set<std::set<std::uint32_t>> rest;
+  for (const auto& t : map.rest.triangles)
+    EXPECT_TRUE(rest.insert({t[0], t[1], t[2]}).second) << "a triangle of the rest is there twice";
   const TriangulatedMap triangles = triangulated(map);
   std::vector<double> area(map.polygons.size(), 0);
   for (std::size_t i = 0; i < triangles.mesh.triangles.size(); ++i) {
