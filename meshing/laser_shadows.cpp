@@ -309,7 +309,9 @@ bool sees_border(const RangeMap& map, const SightParams& params, const GapSample
 
 /// Adds what one scan says.
 void look(const RangeMap& map, const SightParams& params, GapSamples& gap) {
-  if (gap.border.empty() || gap.normal.dot(map.origin() - gap.border.front()) <= 0) return;
+  if (gap.border.empty()) return;
+  const Eigen::Vector3f way = map.origin() - gap.border.front();
+  if (gap.normal.dot(way) <= 0 || way.norm() > map.farthest()) return;
   const bool is_witness = sees_border(map, params, gap);
   for (Sample& s : gap.inside) {
     const Sight sight = map.sight(s.place, gap.normal, params);

@@ -212,7 +212,9 @@ void drop_folded_pairs(RestSurface& rest) {
 void reduce(RestSurface& rest, std::size_t shared_points, double max_error) {
   std::vector<bool> fixed(rest.points.size(), false);
   std::fill_n(fixed.begin(), shared_points, true);
+  drop_folded_pairs(rest);
   rest.triangles = reduced_surface(rest.points, rest.triangles, fixed, max_error);
+  drop_folded_pairs(rest);
 }
 
 PolygonMap finished(BorderNetwork& network, RestSurface& rest, const DraftParams& params,
@@ -229,7 +231,6 @@ PolygonMap finished(BorderNetwork& network, RestSurface& rest, const DraftParams
       for (const auto& scrap : builder.add_made_valid(draft, plane, params.min_area))
         add_scrap(rest, scrap, plane);
   }
-  drop_folded_pairs(rest);
   reduce(rest, network.corners.points.size(), rest_error);
   PolygonMap map = builder.built();
   map.rest = mesh_of(rest);

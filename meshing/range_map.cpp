@@ -66,7 +66,7 @@ Sight RangeMap::sight(const Eigen::Vector3f& place, const Eigen::Vector3f& norma
                       const SightParams& params) const {
   const Eigen::Vector3f way = place - origin_;
   const float range = way.norm(), height = std::abs(normal.dot(way));
-  if (range == 0 || height == 0 || farthest_ == 0) return Sight::nothing;
+  if (range == 0 || height == 0 || range > farthest_) return Sight::nothing;
   const Pixel pixel = pixel_of(way, pixels_);
   const float nearest = nearest_[at(pixel)];
   if (nearest == infinite) return is_empty_around(pixel) ? Sight::lost : Sight::nothing;

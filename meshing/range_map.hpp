@@ -45,11 +45,12 @@ class RangeMap {
                      const SightParams& params) const;
 
   /// Where the nearest ray in the pixel of a place on a surface ends: before it, at it, or behind
-  /// it.
+  /// it. Nothing is said of places farther than the farthest return.
   Sight sight(const Eigen::Vector3f& place, const Eigen::Vector3f& normal,
               const SightParams& params) const;
 
   const Eigen::Vector3f& origin() const { return origin_; }
+  float farthest() const { return farthest_; }  ///< m, of all returns
 
  private:
   struct Pixel {

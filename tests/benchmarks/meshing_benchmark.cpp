@@ -13,6 +13,7 @@
 #include "labeling/labels.hpp"
 #include "labeling/rooms.hpp"
 #include "meshing/free_space.hpp"
+#include "meshing/laser_shadows.hpp"
 #include "meshing/normals.hpp"
 #include "meshing/polygons.hpp"
 #include "meshing/surface.hpp"
@@ -99,6 +100,7 @@ void measure(Registered& data, int runs) {
       [&] { mesh = reconstruct(data.cloud); },
       [&] { planes = grow_planes(mesh, data.cloud, region_params(voxel)); },
       [&] { map = polygonize(mesh, planes, polygon_params(voxel)); },
+      [&] { map = with_shadows_filled(std::move(map), data.cloud, data.origins); },
       [&] { triangles = triangulated(map); },
       [&] { label(map); },
       [&] { rooms = find_rooms(data.cloud, data.origins, map); }};
@@ -122,8 +124,8 @@ int main(int argc, char** argv) {
   fmt::print("seconds on {} threads; peak memory holds the raw scans and the cloud too\n",
              thread_count());
   fmt::print("{:>10}", "points");
-  for (const char* step :
-       {"normals", "free", "mesh", "planes", "polygons", "triangles", "labels", "rooms", "all"})
+  for (const char* step : {"normals", "free", "mesh", "planes", "polygons", "shadows", "triangles",
+                           "labels", "rooms", "all"})
     fmt::print(" {:>9}", step);
   fmt::print(" {:>9} {:>9} {:>9} {:>6} {:>8}\n", "mesh", "polygons", "triangles", "rooms",
              "peak MB");
