@@ -4,6 +4,7 @@
 #include <string>
 
 #include "labeling/labels.hpp"
+#include "labeling/occupancy.hpp"
 #include "labeling/rooms.hpp"
 #include "meshing/free_space.hpp"
 #include "meshing/laser_shadows.hpp"
@@ -70,6 +71,7 @@ struct Settings {
   ShadowParams shadows;
   LabelParams labels;
   RoomParams rooms;
+  OccupancyParams occupancy;
 
   std::string truth;  ///< path, empty: none
   std::string output_directory = "out";
