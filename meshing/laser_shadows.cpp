@@ -2,14 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <optional>
 #include <string>
-#include <utility>
 
-#include "meshing/geos_polygons.hpp"
-#include "meshing/plane_geometry.hpp"
-#include "meshing/plane_meeting.hpp"
+#include "meshing/plane_gaps.hpp"
 #include "meshing/scan_indices.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
@@ -20,13 +15,7 @@ namespace {
 constexpr std::size_t maps_at_once = 32;
 constexpr double most_samples = 300;                // of one hole
 constexpr double beside = 0.08, border_step = 0.1;  // m, of places on the polygon around a hole
-constexpr double min_border_seen = 0.25;    // share of these that a scan sees, to miss the rest
-constexpr std::size_t most_corners = 6;     // neighbours tried for the other side of a corner
-constexpr double same_plane_cosine = 0.99;  // about 8 degrees
-constexpr double same_plane_offset = 0.03;  // m
-constexpr double min_angle_sine = 0.5;      // of planes whose line closes a notch: 30 degrees
-constexpr double longest_way = 1.5;         // around a corner, against the border of the notch
-constexpr double on_plane = 1e-3;           // m, of a vertex that two planes share
+constexpr double min_border_seen = 0.25;  // share of these that a scan sees, to miss the rest
 
 void check(const Cloud& cloud, std::span<const Eigen::Vector3d> origins,
            const ShadowParams& params) {
@@ -37,207 +26,6 @@ void check(const Cloud& cloud, std::span<const Eigen::Vector3d> origins,
     fail("sample must be positive, is " + std::to_string(params.sample) + " m");
   check_scan_indices(cloud, origins.size(), "laser shadows");
 }
-
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
-
-/// Which polygon has which edge, in the direction of its rings.
-std::map<Edge, std::uint32_t> owners_of_edges(const PolygonMap& map) {
-  std::map<Edge, std::uint32_t> owners;
-  const auto add = [&](const Ring& ring, std::uint32_t polygon) {
-    for (std::size_t i = 0; i < ring.size(); ++i)
-      owners.emplace(Edge(ring[i], ring[(i + 1) % ring.size()]), polygon);
-  };
-  for (std::uint32_t p = 0; p < map.polygons.size(); ++p) {
-    add(map.polygons[p].outer, p);
-    for (const Ring& hole : map.polygons[p].holes) add(hole, p);
-  }
-  return owners;
-}
-
-/// A hole or a notch that may be a shadow.
-struct Gap {
-  std::uint32_t polygon = 0;
-  std::vector<Eigen::Vector3d> outer = {};  ///< counter-clockwise seen from free space
-  Ring names = {};                          ///< vertices of the map, or `unnamed` for a new corner
-  std::size_t first = 0, edges = 0;         ///< of the outer ring; 0 edges: a hole
-  std::vector<std::uint32_t> islands = {};  ///< polygons in the same plane inside
-  double area = 0;                          ///< m^2, without islands
-};
-constexpr std::uint32_t unnamed = 0xffffffffu;
-
-class GapSearch {
- public:
-  GapSearch(const PolygonMap& map, const ShadowParams& params)
-      : map_(map), params_(params), owners_(owners_of_edges(map)) {}
-
-  std::vector<Gap> of(std::uint32_t polygon) const {
-    std::vector<Gap> gaps;
-    const MapPolygon& own = map_.polygons[polygon];
-    for (const Ring& hole : own.holes)
-      if (free_share(hole, 0, hole.size()) >= params_.min_free_border)
-        add({hole.rbegin(), hole.rend()}, std::nullopt, polygon, 0, 0, gaps);
-    add_notches(polygon, gaps);
-    return gaps;
-  }
-
- private:
-  /// The polygon beyond an edge of a ring.
-  std::optional<std::uint32_t> beyond(const Ring& ring, std::size_t i) const {
-    const auto found = owners_.find({ring[(i + 1) % ring.size()], ring[i % ring.size()]});
-    if (found == owners_.end()) return std::nullopt;
-    return found->second;
-  }
-
-  double length(const Ring& ring, std::size_t i) const {
-    return (map_.vertices[ring[(i + 1) % ring.size()]] - map_.vertices[ring[i % ring.size()]])
-        .norm();
-  }
-
-  /// Of some edges of a ring, the share of their length that no other polygon has.
-  double free_share(const Ring& ring, std::size_t first, std::size_t edges) const {
-    double free = 0, all = 0;
-    for (std::size_t i = first; i < first + edges; ++i) {
-      const double l = length(ring, i);
-      all += l;
-      if (!beyond(ring, i)) free += l;
-    }
-    return all > 0 ? free / all : 0;
-  }
-
-  /// The plane beyond an edge, if it cuts the polygon's own at an angle.
-  const Plane* wall(const Ring& ring, std::size_t i, const Plane& own) const {
-    const auto polygon = beyond(ring, i);
-    if (!polygon) return nullptr;
-    const Plane& other = map_.polygons[*polygon].plane;
-    return other.normal.cross(own.normal).norm() >= min_angle_sine ? &other : nullptr;
-  }
-
-  static bool is_same(const Plane& a, const Plane& b) {
-    return a.normal.dot(b.normal) >= same_plane_cosine &&
-           std::abs(a.offset - b.offset) <= same_plane_offset;
-  }
-
-  void add_notches(std::uint32_t polygon, std::vector<Gap>& gaps) const {
-    const Plane& own = map_.polygons[polygon].plane;
-    const Ring& ring = map_.polygons[polygon].outer;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Plane* const from = wall(ring, i, own);
-      if (!from) continue;
-      const Plane* const next = wall(ring, i + 1, own);
-      if (next && is_same(*next, *from)) continue;
-      add_notches_after(polygon, i + 1, *from, gaps);
-    }
-  }
-
-  /// Those that begin at a vertex of the outer ring, behind an edge that it shares with `from`.
-  void add_notches_after(std::uint32_t polygon, std::size_t first, const Plane& from,
-                         std::vector<Gap>& gaps) const {
-    const Plane& own = map_.polygons[polygon].plane;
-    const Ring& ring = map_.polygons[polygon].outer;
-    std::vector<const Plane*> tried;
-    for (std::size_t edges = 1; edges + 1 < ring.size(); ++edges) {
-      const Plane* const to = wall(ring, first + edges, own);
-      if (!to) continue;
-      if (is_same(*to, from)) {
-        add_notch(polygon, first, edges, std::nullopt, gaps);
-        return;
-      }
-      if (std::any_of(tried.begin(), tried.end(), [&](const Plane* p) { return is_same(*p, *to); }))
-        continue;
-      tried.push_back(to);
-      const Eigen::Vector3d& start = map_.vertices[ring[first % ring.size()]];
-      const auto corner = meeting(std::array{own, from, *to}, start, 10, on_plane);
-      if (corner && corner->rank == 3 && edges > 1)
-        add_notch(polygon, first, edges, corner->point, gaps);
-      if (tried.size() == most_corners) return;
-    }
-  }
-
-  /// Closes a chain of edges of the outer ring by a straight line, or by two that meet in `corner`.
-  void add_notch(std::uint32_t polygon, std::size_t first, std::size_t edges,
-                 const std::optional<Eigen::Vector3d>& corner, std::vector<Gap>& gaps) const {
-    const Ring& ring = map_.polygons[polygon].outer;
-    if (edges < 2 || free_share(ring, first, edges) < params_.min_free_border) return;
-    Ring chain;
-    for (std::size_t i = first + edges + 1; i-- > first;) chain.push_back(ring[i % ring.size()]);
-    if (corner && !goes_on(ring, first, edges, *corner)) return;
-    add(std::move(chain), corner, polygon, first, edges, gaps);
-  }
-
-  /// Whether the edges before and after a notch run towards the corner, and that is not far.
-  bool goes_on(const Ring& ring, std::size_t first, std::size_t edges,
-               const Eigen::Vector3d& corner) const {
-    const auto at = [&](std::size_t i) -> const Eigen::Vector3d& {
-      return map_.vertices[ring[i % ring.size()]];
-    };
-    double chain = 0;
-    for (std::size_t i = first; i < first + edges; ++i) chain += length(ring, i);
-    if ((corner - at(first)).norm() + (corner - at(first + edges)).norm() > longest_way * chain)
-      return false;
-    const std::size_t before = first + ring.size() - 1;
-    return (corner - at(first)).dot(at(first) - at(before)) > 0 &&
-           (at(first + edges) - corner).dot(at(first + edges + 1) - at(first + edges)) > 0;
-  }
-
-  void add(Ring names, const std::optional<Eigen::Vector3d>& corner, std::uint32_t polygon,
-           std::size_t first, std::size_t edges, std::vector<Gap>& gaps) const {
-    Gap gap{.polygon = polygon, .names = std::move(names), .first = first, .edges = edges};
-    for (const std::uint32_t v : gap.names) gap.outer.push_back(map_.vertices[v]);
-    if (corner) {
-      gap.names.push_back(unnamed);
-      gap.outer.push_back(*corner);
-    }
-    const PlaneFrame frame(map_.polygons[polygon].plane);
-    Ring2d outer;
-    for (const Eigen::Vector3d& p : gap.outer) outer.push_back(frame.flat(p));
-    gap.area = signed_area(outer);
-    if (!find_islands(frame, outer, gap)) return;
-    if (!(gap.area >= params_.min_area && gap.area <= params_.max_area)) return;
-    if (is_valid_polygon(rings_of(gap, frame))) gaps.push_back(std::move(gap));
-  }
-
-  /// Other polygons in the plane, inside the gap. False if one is partly inside.
-  bool find_islands(const PlaneFrame& frame, const Ring2d& outer, Gap& gap) const {
-    const Plane& own = map_.polygons[gap.polygon].plane;
-    for (std::uint32_t p = 0; p < map_.polygons.size(); ++p) {
-      const MapPolygon& other = map_.polygons[p];
-      if (p == gap.polygon || !is_same(other.plane, own)) continue;
-      std::size_t inside = 0, on_border = 0;
-      for (const std::uint32_t v : other.outer) {
-        if (std::find(gap.names.begin(), gap.names.end(), v) != gap.names.end())
-          ++on_border;
-        else
-          inside += is_inside(outer, frame.flat(map_.vertices[v]));
-      }
-      if (inside == 0) continue;
-      if (on_border > 0 || inside < other.outer.size()) return false;
-      gap.islands.push_back(p);
-      Ring2d ring;
-      for (const std::uint32_t v : other.outer) ring.push_back(frame.flat(map_.vertices[v]));
-      gap.area -= signed_area(ring);
-    }
-    return true;
-  }
-
- public:
-  /// In the plane: the outer ring, then the islands.
-  std::vector<Ring2d> rings_of(const Gap& gap, const PlaneFrame& frame) const {
-    std::vector<Ring2d> rings(1);
-    for (const Eigen::Vector3d& p : gap.outer) rings.front().push_back(frame.flat(p));
-    for (const std::uint32_t island : gap.islands) {
-      rings.emplace_back();
-      const Ring& outer = map_.polygons[island].outer;
-      for (auto v = outer.rbegin(); v != outer.rend(); ++v)
-        rings.back().push_back(frame.flat(map_.vertices[*v]));
-    }
-    return rings;
-  }
-
- private:
-  const PolygonMap& map_;
-  const ShadowParams& params_;
-  std::map<Edge, std::uint32_t> owners_;
-};
 
 /// A place in a gap, and what all scans together say about it.
 struct Sample {
@@ -272,7 +60,7 @@ std::vector<Sample> samples_inside(const std::vector<Ring2d>& rings, const Plane
 }
 
 /// Beside the edges of the polygon; those that close a notch have nothing beside them.
-std::vector<Eigen::Vector3f> samples_beside(const Gap& gap, const Ring2d& outer,
+std::vector<Eigen::Vector3f> samples_beside(const PlaneGap& gap, const Ring2d& outer,
                                             const PlaneFrame& frame) {
   const std::size_t edges = gap.edges > 0 ? gap.edges : outer.size();
   std::vector<Eigen::Vector3f> places;
@@ -290,7 +78,7 @@ std::vector<Eigen::Vector3f> samples_beside(const Gap& gap, const Ring2d& outer,
   return places;
 }
 
-GapSamples samples_of(const Gap& gap, const std::vector<Ring2d>& rings, const Plane& plane,
+GapSamples samples_of(const PlaneGap& gap, const std::vector<Ring2d>& rings, const Plane& plane,
                       double distance) {
   const PlaneFrame frame(plane);
   const double step = std::max(distance, std::sqrt(gap.area / most_samples));
@@ -349,20 +137,11 @@ bool is_shadow(const std::vector<Sample>& samples, const ShadowParams& params) {
          known >= params.min_known * all;
 }
 
-/// Whether two gaps have an edge of the outer ring in common.
-bool overlap(const Gap& a, const Gap& b, std::size_t ring_edges) {
-  if (a.polygon != b.polygon || a.edges == 0 || b.edges == 0) return false;
-  const auto covers = [&](const Gap& gap, std::size_t edge) {
-    return (edge + ring_edges - gap.first % ring_edges) % ring_edges < gap.edges;
-  };
-  return covers(a, b.first % ring_edges) || covers(b, a.first % ring_edges);
-}
-
-InferredPatch patch_of(const Gap& gap, PolygonMap& map) {
+InferredPatch patch_of(const PlaneGap& gap, PolygonMap& map) {
   InferredPatch patch{.polygon = gap.polygon,
                       .shape = {map.polygons[gap.polygon].plane, gap.names, {}, gap.area}};
   for (std::size_t i = 0; i < gap.names.size(); ++i) {
-    if (gap.names[i] != unnamed) continue;
+    if (gap.names[i] != PlaneGap::unnamed) continue;
     patch.shape.outer[i] = static_cast<std::uint32_t>(map.vertices.size());
     map.vertices.push_back(gap.outer[i]);
   }
@@ -381,28 +160,25 @@ PolygonMap with_shadows_filled(PolygonMap map, const Cloud& cloud,
   check(cloud, origins, params);
   map.inferred.clear();
   if (params.max_area == 0) return map;
-  const GapSearch search(map, params);
-  std::vector<Gap> gaps;
-  for (std::uint32_t p = 0; p < map.polygons.size(); ++p)
-    for (Gap& gap : search.of(p)) gaps.push_back(std::move(gap));
+  std::vector<PlaneGap> gaps = plane_gaps(map, {.min_area = params.min_area,
+                                                .max_area = params.max_area,
+                                                .min_free_border = params.min_free_border});
   std::stable_sort(gaps.begin(), gaps.end(),
-                   [](const Gap& a, const Gap& b) { return a.area > b.area; });
+                   [](const PlaneGap& a, const PlaneGap& b) { return a.area > b.area; });
   std::vector<GapSamples> samples;
-  for (const Gap& gap : gaps) {
+  for (const PlaneGap& gap : gaps) {
     const Plane& plane = map.polygons[gap.polygon].plane;
-    samples.push_back(
-        samples_of(gap, search.rings_of(gap, PlaneFrame(plane)), plane, params.sample));
+    samples.push_back(samples_of(gap, rings_of(gap, map, PlaneFrame(plane)), plane, params.sample));
   }
   look(samples, cloud, origins, params.sight);
-  std::vector<const Gap*> filled;
+  std::vector<const PlaneGap*> filled;
   for (std::uint32_t g = 0; g < gaps.size(); ++g) {
     if (!is_shadow(samples[g].inside, params)) continue;
-    const std::size_t ring = map.polygons[gaps[g].polygon].outer.size();
     if (std::none_of(filled.begin(), filled.end(),
-                     [&](const Gap* other) { return overlap(gaps[g], *other, ring); }))
+                     [&](const PlaneGap* other) { return overlap(gaps[g], *other, map); }))
       filled.push_back(&gaps[g]);
   }
-  for (const Gap* gap : filled) map.inferred.push_back(patch_of(*gap, map));
+  for (const PlaneGap* gap : filled) map.inferred.push_back(patch_of(*gap, map));
   return map;
 }
 

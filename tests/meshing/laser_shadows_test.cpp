@@ -26,8 +26,12 @@ using testing::ScannedScene;
 /// Polygons by hand, turned towards the middle of the room; corners at one place are one vertex.
 class MapByHand {
  public:
+  explicit MapByHand(const Vector3d& shift = Vector3d::Zero()) : shift_(shift) {}
+
   void add(Points outer, Points hole = {}) {
-    if (area_vector(outer).dot(Vector3d(2, 1, 1) - outer[0]) < 0)
+    for (Points* ring : {&outer, &hole})
+      for (Vector3d& p : *ring) p += shift_;
+    if (area_vector(outer).dot(Vector3d(2, 1, 1) + shift_ - outer[0]) < 0)
       std::reverse(outer.begin(), outer.end());
     const Vector3d area = area_vector(outer), normal = area.normalized();
     MapPolygon polygon{{normal, normal.dot(outer[0])}, named(outer), {}, area.norm()};
@@ -59,6 +63,7 @@ class MapByHand {
     return ring;
   }
 
+  Vector3d shift_;
   PolygonMap map_;
 };
 
@@ -193,6 +198,31 @@ TEST(LaserShadows, FillNotchesUpToTheLineWherePlanesMeet) {
   EXPECT_EQ(after.inferred[1].polygon, 1u);
   EXPECT_NEAR(after.inferred[1].shape.area, 0.8 * 0.7, 1e-9);
   EXPECT_EQ(after.vertices.size(), map.map().vertices.size());
+}
+
+/// The wall is two polygons that are turned a little against each other; far from the origin their
+/// offsets differ by metres.
+TEST(LaserShadows, AreBoundedByPartsOfOneWallWhereverTheWorldBegins) {
+  const Vector3d shift(800, 0, 0);
+  MapByHand map(shift);
+  map.add({{0, 0, 0},
+           {4, 0, 0},
+           {4, 3.01, 0},
+           {2.4, 3, 0},
+           {2.4, 2, 0},
+           {1.6, 2, 0},
+           {1.6, 3, 0},
+           {0, 3, 0}});
+  map.add({{0, 3, 0}, {1.6, 3, 0}, {1.6, 3, 2.5}, {0, 3, 2.5}});
+  map.add({{2.4, 3, 0}, {4, 3.01, 0}, {4, 3.01, 2.5}, {2.4, 3, 2.5}});
+  TriangleMesh model = room();
+  add_box(model, {1.5, 1.9, 0}, {2.5, 2.9, 1.0});
+  ScannedScene scene = seen(model);
+  for (Eigen::Vector3f& p : scene.cloud.points) p += shift.cast<float>();
+  for (Vector3d& origin : scene.origins) origin += shift;
+  const PolygonMap after = with_shadows_filled(map.map(), scene.cloud, scene.origins);
+  ASSERT_EQ(after.inferred.size(), 1u);
+  EXPECT_NEAR(after.inferred[0].shape.area, 0.8 * 1, 1e-9);
 }
 
 TEST(LaserShadows, FillTheCornerOfARoomThatNobodySaw) {
