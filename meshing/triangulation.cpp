@@ -89,7 +89,10 @@ TriangulatedMap triangulated(const PolygonMap& map) {
   std::vector<std::uint32_t> name;
   for (const Eigen::Vector3f& v : map.rest.vertices) name.push_back(index.of(v));
   for (const Triangle& t : map.rest.triangles) {
-    result.mesh.triangles.push_back({name[t[0]], name[t[1]], name[t[2]]});
+    const Triangle named{name[t[0]], name[t[1]], name[t[2]]};
+    // Places that only differ beyond a float's precision are one.
+    if (named[0] == named[1] || named[1] == named[2] || named[2] == named[0]) continue;
+    result.mesh.triangles.push_back(named);
     result.polygon.push_back(TriangulatedMap::rest);
   }
   result.inferred.assign(result.polygon.size(), 0);

@@ -166,5 +166,16 @@ TEST(ValidPolygon, IsMadeOfAnyRing) {
   for (const auto& piece : pieces) EXPECT_NEAR(area_of(piece), 1, 1e-12);
 }
 
+TEST(Triangulation, LeavesOutTrianglesOfTheRestWhoseCornersAreOnePlace) {
+  PolygonMap map;
+  map.rest.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}};
+  map.rest.triangles = {{0, 1, 2}, {0, 1, 3}};
+  const TriangulatedMap result = triangulated(map);
+  ASSERT_EQ(result.mesh.triangles.size(), 1u);
+  EXPECT_EQ(result.polygon.size(), 1u);
+  EXPECT_EQ(result.inferred.size(), 1u);
+  EXPECT_EQ(result.mesh.vertices.size(), 3u);
+}
+
 }  // namespace
 }  // namespace planum

@@ -15,6 +15,7 @@
 #include "slam/io/ply.hpp"
 #include "slam/io/tum.hpp"
 #include "slam/sensor/range_limits.hpp"
+#include "tools/maps/map_glb.hpp"
 #include "tools/maps/map_mesh.hpp"
 #include "tools/maps/polygons_json.hpp"
 #include "tools/planum/arguments.hpp"
@@ -118,8 +119,10 @@ void polygonize_command(const PolygonizeArguments& arguments) {
   write_polygons_json(arguments.output / "polygons.json", {map, labels, no_rooms});
   write_map_ply(arguments.output / "map.ply", triangles, labels);
   write_map_obj(arguments.output / "map.obj", triangles, labels);
-  fmt::print("{} polygons in {}: polygons.json, map.ply, map.obj, mesh.ply\n", map.polygons.size(),
-             arguments.output.string());
+  if (!triangles.mesh.triangles.empty())
+    write_map_glb(arguments.output / "map.glb", triangles, {map, labels, no_rooms});
+  fmt::print("{} polygons in {}: polygons.json, map.ply, map.obj, map.glb, mesh.ply\n",
+             map.polygons.size(), arguments.output.string());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "labeling/occupancy.hpp"
 #include "meshing/triangulation.hpp"
+#include "tools/maps/map_glb.hpp"
 #include "tools/maps/map_mesh.hpp"
 #include "tools/maps/occupancy_map.hpp"
 #include "tools/maps/polygons_json.hpp"
@@ -36,15 +37,17 @@ void work(StageContext& context) {
   write_polygons_json(context.staging / "polygons.json", {map, labelled.labels, labelled.rooms});
   write_map_ply(context.staging / "map.ply", mesh, labelled.labels);
   write_map_obj(context.staging / "map.obj", mesh, labelled.labels);
+  write_map_glb(context.staging / "map.glb", mesh, {map, labelled.labels, labelled.rooms});
   const std::size_t storeys = write_occupancy(map, labelled.labels, context);
-  context.record.summary = fmt::format("polygons.json, map.ply, map.obj, {} of occupancy", storeys);
+  context.record.summary =
+      fmt::format("polygons.json, map.ply, map.obj, map.glb, {} of occupancy", storeys);
 }
 
 }  // namespace
 
 Stage maps_stage() {
   return {.name = "maps",
-          .version = 2,
+          .version = 3,
           .unit = "steps",
           .needs = {"cloud", "mesh", "polygons", "labels"},
           .parameters = {"maps"},
