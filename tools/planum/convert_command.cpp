@@ -6,6 +6,7 @@
 #include "slam/io/g2o.hpp"
 #include "slam/io/input_file.hpp"
 #include "slam/io/obj.hpp"
+#include "slam/io/pcd.hpp"
 #include "slam/io/ply.hpp"
 #include "slam/io/tum.hpp"
 #include "slam/io/uos.hpp"
@@ -20,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* formats =
-    "Points:        .slices .3d .ply .vtk .xyz .pts .asc .dat .txt  ->  .3d .xyz .ply\n"
+    "Points:        .slices .3d .ply .vtk .xyz .pts .asc .dat .txt  ->  .3d .xyz .ply .pcd\n"
     "Meshes:        .obj .ply                                       ->  .obj .ply\n"
     "Trajectories:  .tum .g2o                                       ->  .tum\n"
     "A .slices file becomes points in the frame of the scanner; .txt holds slices or points.";
@@ -74,6 +75,7 @@ void convert_points(const fs::path& in, const fs::path& out) {
   if (out.extension() == ".3d") return write_uos_scan(out, *cloud);
   if (out.extension() == ".xyz") return write_xyz(out, *cloud);
   if (out.extension() == ".ply") return write_ply(out, *cloud);
+  if (out.extension() == ".pcd") return write_pcd(out, *cloud);
   throw_unknown(in, out);
 }
 

@@ -2,6 +2,7 @@
 
 #include "labeling/occupancy.hpp"
 #include "meshing/triangulation.hpp"
+#include "slam/io/pcd.hpp"
 #include "tools/maps/map_glb.hpp"
 #include "tools/maps/map_mesh.hpp"
 #include "tools/maps/occupancy_map.hpp"
@@ -38,16 +39,18 @@ void work(StageContext& context) {
   write_map_ply(context.staging / "map.ply", mesh, labelled.labels);
   write_map_obj(context.staging / "map.obj", mesh, labelled.labels);
   write_map_glb(context.staging / "map.glb", mesh, {map, labelled.labels, labelled.rooms});
+  write_pcd(context.staging / "cloud.pcd",
+            with_scan_numbers(context.results.cloud.get(), context.results.world.get()));
   const std::size_t storeys = write_occupancy(map, labelled.labels, context);
   context.record.summary =
-      fmt::format("polygons.json, map.ply, map.obj, map.glb, {} of occupancy", storeys);
+      fmt::format("polygons.json, map.ply, map.obj, map.glb, cloud.pcd, {} of occupancy", storeys);
 }
 
 }  // namespace
 
 Stage maps_stage() {
   return {.name = "maps",
-          .version = 3,
+          .version = 4,
           .unit = "steps",
           .needs = {"cloud", "mesh", "polygons", "labels"},
           .parameters = {"maps"},
