@@ -248,6 +248,25 @@ TEST(Surface, SaysWhatIsWrongWithTheInput) {
   EXPECT_EQ(message_of(cloud), "point 17 of 1000 is not finite");
 }
 
+/// Origins that cannot be: in a wall, behind it, at a point. What they say is wrong is at most the
+/// side of a surface.
+TEST(Surface, StandsOriginsInsideWalls) {
+  const TriangleMesh model = testing::room_with_box();
+  const ScannedScene scene = scanned(model, testing::room_poses(), {.slices = 100});
+  for (const Vector3d& wrong : {Vector3d(0, 2, 1), Vector3d(-1, 2, 1), Vector3d(2, 2, -0.001),
+                                scene.cloud.points[0].cast<double>().eval()}) {
+    Cloud cloud = scene.cloud;
+    std::vector<Vector3d> origins = scene.origins;
+    origins[1] = wrong;
+    cloud.normals = estimate_normals(cloud, origins);
+    for (const Vector3f& n : cloud.normals) ASSERT_TRUE(n.isZero() || n.allFinite());
+    const TriangleMesh mesh = reconstruct(cloud);
+    EXPECT_GT(covered(mesh, scanned(model, testing::room_poses(), {.noise = 0}).cloud, 997), 0.8);
+    const Deviation deviation = deviation_of(mesh, model, 29);
+    EXPECT_LT(deviation.mean, 0.01);
+  }
+}
+
 TEST(Surface, OfAFewLoosePointsIsAnError) {
   Cloud cloud;
   cloud.points = {{0, 0, 0}, {5, 0, 0}, {0, 5, 0}};
