@@ -3,6 +3,7 @@
 #include "labeling/occupancy.hpp"
 #include "meshing/triangulation.hpp"
 #include "slam/io/pcd.hpp"
+#include "tools/maps/floor_plan.hpp"
 #include "tools/maps/map_glb.hpp"
 #include "tools/maps/map_mesh.hpp"
 #include "tools/maps/occupancy_map.hpp"
@@ -41,16 +42,19 @@ void work(StageContext& context) {
   write_map_glb(context.staging / "map.glb", mesh, {map, labelled.labels, labelled.rooms});
   write_pcd(context.staging / "cloud.pcd",
             with_scan_numbers(context.results.cloud.get(), context.results.world.get()));
+  if (!labelled.rooms.rooms.empty())
+    write_floor_plan_svg(context.staging / "floorplan.svg", labelled.rooms);
   const std::size_t storeys = write_occupancy(map, labelled.labels, context);
   context.record.summary =
-      fmt::format("polygons.json, map.ply, map.obj, map.glb, cloud.pcd, {} of occupancy", storeys);
+      fmt::format("polygons.json, map.ply, map.obj, map.glb, cloud.pcd, {}{} of occupancy",
+                  labelled.rooms.rooms.empty() ? "" : "floorplan.svg, ", storeys);
 }
 
 }  // namespace
 
 Stage maps_stage() {
   return {.name = "maps",
-          .version = 4,
+          .version = 5,
           .unit = "steps",
           .needs = {"cloud", "mesh", "polygons", "labels"},
           .parameters = {"maps"},
