@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "meshing/geos_polygons.hpp"
 #include "meshing/plane_meeting.hpp"
 
