@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "meshing/scan_indices.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
 
@@ -24,11 +25,8 @@ void check(const Cloud& cloud, std::span<const Eigen::Vector3d> origins,
   if (params.max_rays == 0) fail("max_rays must be above 0");
   if (cloud.normals.size() != cloud.points.size()) fail("the cloud has no normals");
   if (cloud.points.empty()) return;
-  if (cloud.scan.empty() ? origins.size() != 1 : cloud.scan.size() != cloud.points.size())
-    fail("the points do not say which scan saw them");
-  for (const std::uint32_t scan : cloud.scan)
-    if (scan >= origins.size())
-      fail("a point is of scan " + std::to_string(scan) + " of " + std::to_string(origins.size()));
+  if (origins.empty()) fail("there are no scan origins");
+  check_scan_indices(cloud, origins.size(), "occupancy");
 }
 
 /// Around all surface, with a cell to spare; cells at multiples of their size in the world.

@@ -9,6 +9,7 @@
 
 #include "meshing/geos_polygons.hpp"
 #include "meshing/plane_geometry.hpp"
+#include "meshing/polygon_drafts.hpp"
 
 namespace planum {
 namespace {
@@ -59,7 +60,7 @@ class LensCloser {
     const double area = signed_area(tip);
     if (!(std::abs(area) < max_area_)) return false;
     ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(i));
-    if (!is_valid(polygon, frame)) {
+    if (!is_valid(polygon)) {
       ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(i), m);
       return false;
     }
@@ -70,13 +71,10 @@ class LensCloser {
     return true;
   }
 
-  bool is_valid(MapPolygon& polygon, const PlaneFrame& frame) const {
-    std::vector<Ring2d> rings;
-    each_ring(polygon, [&](const Ring& ring) {
-      rings.emplace_back();
-      for (const std::uint32_t v : ring) rings.back().push_back(frame.flat(map_.vertices[v]));
-    });
-    return is_valid_polygon(rings);
+  bool is_valid(const MapPolygon& polygon) const {
+    std::vector<Ring> rings{polygon.outer};
+    rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
+    return is_valid_polygon(flat_rings(rings, polygon.plane, map_.vertices));
   }
 
   PolygonMap& map_;

@@ -13,8 +13,6 @@
 namespace planum {
 namespace {
 
-/// Maps that are held at a time.
-constexpr std::size_t maps_at_once = 32;
 constexpr std::size_t cells_per_task = 2048;
 
 void check(const Cloud& cloud, std::span<const Eigen::Vector3d> origins,
@@ -83,21 +81,16 @@ std::vector<std::uint8_t> in_free_space(const Cloud& cloud,
   const std::vector<CellKey> keys = cell_keys(lattice, cloud.points);
   const CellSort sorted = sort_by_cell(keys);
   std::vector<CellPoints> cells = cells_of(cloud, keys, sorted.order);
-  const auto own = points_of_scans(cloud, origins.size());
   const SightParams sight{.margin = params.margin,
                           .margin_per_metre = params.margin_per_metre,
                           .max_tilt = params.max_tilt};
-  for (std::size_t first = 0; first < origins.size(); first += maps_at_once) {
-    std::vector<RangeMap> maps(std::min(maps_at_once, origins.size() - first));
-    parallel_for(maps.size(), 1, [&](std::size_t k, std::size_t) {
-      maps[k] = RangeMap(cloud.points, own[first + k], origins[first + k]);
-    });
+  visit_range_maps(cloud, origins, [&](std::span<const RangeMap> maps) {
     parallel_for(cells.size(), cells_per_task, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k)
         for (const RangeMap& map : maps)
           cells[k].through += map.looks_through(cells[k].mean, cells[k].normal, sight);
     });
-  }
+  });
   for (const CellPoints& cell : cells) {
     if (cell.through < std::max(params.min_scans, 2 * cell.scans)) continue;
     for (std::uint32_t i = cell.begin; i < cell.end; ++i) result[sorted.order[i]] = 1;

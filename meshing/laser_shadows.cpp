@@ -12,7 +12,6 @@
 namespace planum {
 namespace {
 
-constexpr std::size_t maps_at_once = 32;
 constexpr double most_samples = 300;                // of one hole
 constexpr double beside = 0.08, border_step = 0.1;  // m, of places on the polygon around a hole
 constexpr double min_border_seen = 0.25;  // share of these that a scan sees, to miss the rest
@@ -78,9 +77,10 @@ std::vector<Eigen::Vector3f> samples_beside(const PlaneGap& gap, const Ring2d& o
   return places;
 }
 
-GapSamples samples_of(const PlaneGap& gap, const std::vector<Ring2d>& rings, const Plane& plane,
-                      double distance) {
+GapSamples samples_of(const PlaneGap& gap, const PolygonMap& map, double distance) {
+  const Plane& plane = map.polygons[gap.polygon].plane;
   const PlaneFrame frame(plane);
+  const std::vector<Ring2d> rings = rings_of(gap, map, frame);
   const double step = std::max(distance, std::sqrt(gap.area / most_samples));
   return {.normal = plane.normal.cast<float>(),
           .inside = samples_inside(rings, frame, step),
@@ -112,16 +112,11 @@ void look(const RangeMap& map, const SightParams& params, GapSamples& gap) {
 
 void look(std::vector<GapSamples>& gaps, const Cloud& cloud,
           std::span<const Eigen::Vector3d> origins, const SightParams& params) {
-  const auto own = points_of_scans(cloud, origins.size());
-  for (std::size_t first = 0; first < origins.size(); first += maps_at_once) {
-    std::vector<RangeMap> maps(std::min(maps_at_once, origins.size() - first));
-    parallel_for(maps.size(), 1, [&](std::size_t k, std::size_t) {
-      maps[k] = RangeMap(cloud.points, own[first + k], origins[first + k]);
-    });
+  visit_range_maps(cloud, origins, [&](std::span<const RangeMap> maps) {
     parallel_for(gaps.size(), 1, [&](std::size_t g, std::size_t) {
       for (const RangeMap& map : maps) look(map, params, gaps[g]);
     });
-  }
+  });
 }
 
 bool is_shadow(const std::vector<Sample>& samples, const ShadowParams& params) {
@@ -166,10 +161,7 @@ PolygonMap with_shadows_filled(PolygonMap map, const Cloud& cloud,
   std::stable_sort(gaps.begin(), gaps.end(),
                    [](const PlaneGap& a, const PlaneGap& b) { return a.area > b.area; });
   std::vector<GapSamples> samples;
-  for (const PlaneGap& gap : gaps) {
-    const Plane& plane = map.polygons[gap.polygon].plane;
-    samples.push_back(samples_of(gap, rings_of(gap, map, PlaneFrame(plane)), plane, params.sample));
-  }
+  for (const PlaneGap& gap : gaps) samples.push_back(samples_of(gap, map, params.sample));
   look(samples, cloud, origins, params.sight);
   std::vector<const PlaneGap*> filled;
   for (std::uint32_t g = 0; g < gaps.size(); ++g) {

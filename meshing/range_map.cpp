@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "slam/core/parallel.hpp"
+
 namespace planum {
 namespace {
 
@@ -17,6 +19,8 @@ constexpr int most_pixels = 128, least_pixels = 32;
 constexpr int least_returns = 5;
 /// A map is fine enough if the nine pixels around a return have so many on average.
 constexpr double usual_returns = 6;
+/// Maps that are held at a time.
+constexpr std::size_t maps_at_once = 32;
 
 bool is_flat(const Eigen::Vector3f& normal, const Eigen::Vector3f& way, float range,
              double max_tilt) {
@@ -26,6 +30,17 @@ bool is_flat(const Eigen::Vector3f& normal, const Eigen::Vector3f& way, float ra
 
 float margin_at(float range, const SightParams& params) {
   return static_cast<float>(params.margin + params.margin_per_metre * range);
+}
+
+/// For each scan the positions of its points.
+std::vector<std::vector<std::uint32_t>> points_of_scans(const Cloud& cloud, std::size_t scans) {
+  std::vector<std::vector<std::uint32_t>> result(scans);
+  if (cloud.scan.empty() && scans == 1) {
+    result.front().resize(cloud.points.size());
+    std::iota(result.front().begin(), result.front().end(), 0u);
+  }
+  for (std::uint32_t i = 0; i < cloud.scan.size(); ++i) result[cloud.scan[i]].push_back(i);
+  return result;
 }
 
 }  // namespace
@@ -128,14 +143,16 @@ double RangeMap::widen() {
   return centres == 0 ? 0 : static_cast<double>(returns) / static_cast<double>(centres);
 }
 
-std::vector<std::vector<std::uint32_t>> points_of_scans(const Cloud& cloud, std::size_t scans) {
-  std::vector<std::vector<std::uint32_t>> result(scans);
-  if (cloud.scan.empty() && scans == 1) {
-    result.front().resize(cloud.points.size());
-    std::iota(result.front().begin(), result.front().end(), 0u);
+void visit_range_maps(const Cloud& cloud, std::span<const Eigen::Vector3d> origins,
+                      const std::function<void(std::span<const RangeMap>)>& visit) {
+  const auto own = points_of_scans(cloud, origins.size());
+  for (std::size_t first = 0; first < origins.size(); first += maps_at_once) {
+    std::vector<RangeMap> maps(std::min(maps_at_once, origins.size() - first));
+    parallel_for(maps.size(), 1, [&](std::size_t k, std::size_t) {
+      maps[k] = RangeMap(cloud.points, own[first + k], origins[first + k]);
+    });
+    visit(maps);
   }
-  for (std::uint32_t i = 0; i < cloud.scan.size(); ++i) result[cloud.scan[i]].push_back(i);
-  return result;
 }
 
 }  // namespace planum

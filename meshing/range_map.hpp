@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -69,7 +70,10 @@ class RangeMap {
   std::vector<float> widened_;  ///< m, the nearest of nine pixels; 0 where too few have returns
 };
 
-/// For each scan the positions of its points; a cloud that does not say which scan is of the first.
-std::vector<std::vector<std::uint32_t>> points_of_scans(const Cloud& cloud, std::size_t scans);
+/// Calls visit with the range maps of all scans in their order, some dozens at a time, so that
+/// memory does not grow with the scans. A cloud that does not say which scan a point is of is of
+/// the first.
+void visit_range_maps(const Cloud& cloud, std::span<const Eigen::Vector3d> scan_origins,
+                      const std::function<void(std::span<const RangeMap>)>& visit);
 
 }  // namespace planum
