@@ -81,6 +81,16 @@ const char* name(Label label) {
       return "ceiling";
     case Label::wall:
       return "wall";
+    case Label::door:
+      return "door";
+    case Label::window:
+      return "window";
+    case Label::stair:
+      return "stair";
+    case Label::furniture_horizontal:
+      return "furniture_horizontal";
+    case Label::furniture_vertical:
+      return "furniture_vertical";
     case Label::unknown:
       break;
   }

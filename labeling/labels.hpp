@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <Eigen/Core>
@@ -9,10 +10,30 @@
 
 namespace planum {
 
-/// What a polygon is a part of.
-enum class Label { unknown, floor, ceiling, wall };
+/// What a polygon is a part of. The numbers are those of `label` in map.ply: they stay.
+enum class Label {
+  unknown,
+  floor,
+  ceiling,
+  wall,
+  door,                  ///< jambs, lintels and thresholds of doors and passages, and door leaves
+  window,                ///< sills, reveals and panes of windows
+  stair,                 ///< treads and risers, and single steps
+  furniture_horizontal,  ///< tops of tables and cupboards, shelves, seats, and their undersides
+  furniture_vertical,    ///< sides of what stands on the floor and is no wall
+};
 
-/// As in polygons.json: "unknown", "floor", "ceiling", "wall".
+inline constexpr std::array all_labels = {Label::unknown,
+                                          Label::floor,
+                                          Label::ceiling,
+                                          Label::wall,
+                                          Label::door,
+                                          Label::window,
+                                          Label::stair,
+                                          Label::furniture_horizontal,
+                                          Label::furniture_vertical};
+
+/// As in polygons.json: "unknown", "floor", "furniture_horizontal" ...
 const char* name(Label label);
 
 struct PolygonLabel {

@@ -30,10 +30,12 @@ struct Room {
   double height = 0;                     ///< m, from the floor to the largest part of the ceiling
   std::vector<Eigen::Vector3d> outline;  ///< m, on the floor, counter-clockwise seen from above
   std::vector<std::size_t> scans;        ///< those that were taken in it
+  std::size_t storey = 0;                ///< position in RoomMap::storeys
 };
 
-/// The rooms of a storey and how they hang together.
+/// The rooms of a building and how they hang together.
 struct RoomMap {
+  std::vector<double> storeys;  ///< m, heights of their floors, lowest first
   std::vector<Room> rooms;
   std::vector<Opening> openings;              ///< Opening::rooms are positions in `rooms`
   std::vector<std::int32_t> room_of_polygon;  ///< for each polygon of the map its room, or -1

@@ -1,7 +1,5 @@
 #include "tools/maps/map_mesh.hpp"
 
-#include <array>
-
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
@@ -12,8 +10,6 @@
 
 namespace planum {
 namespace {
-
-constexpr std::array all_labels = {Label::unknown, Label::floor, Label::ceiling, Label::wall};
 
 /// The label of each triangle, or null where it is in no polygon.
 std::vector<const PolygonLabel*> labels_of_triangles(const TriangulatedMap& mesh,

@@ -105,7 +105,7 @@ Json labels_json(const PolygonMap& map, const Labels& labels) {
   if (labels.polygons.size() != map.polygons.size())
     throw Error("report: labels and polygons do not match");
   Json json = Json::object();
-  for (const Label label : {Label::floor, Label::ceiling, Label::wall, Label::unknown}) {
+  for (const Label label : all_labels) {
     std::size_t count = 0;
     double area = 0;
     for (std::size_t i = 0; i < map.polygons.size(); ++i) {

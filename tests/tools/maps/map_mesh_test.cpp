@@ -174,7 +174,7 @@ TEST(MapMesh, ObjFindsEveryMaterialInTheLibraryBesideIt) {
   write_map_obj(directory / "some.map.obj", triangulated(small.map), small.labels);
   EXPECT_TRUE(testing::text_of(directory / "some.map.obj").starts_with("mtllib some.map.mtl\nv "));
   const auto materials = materials_in(directory / "some.map.mtl");
-  EXPECT_EQ(materials.size(), 5u);
+  EXPECT_EQ(materials.size(), all_labels.size() + 1);
   const LabelledMesh obj = read_obj(directory / "some.map.obj");
   EXPECT_EQ(std::set(obj.names.begin(), obj.names.end()),
             (std::set<std::string>{"floor", "ceiling", "wall", "unknown", "rest"}));
@@ -184,16 +184,14 @@ TEST(MapMesh, ObjFindsEveryMaterialInTheLibraryBesideIt) {
       EXPECT_NEAR(255 * materials.at(material)[k], colour[static_cast<std::size_t>(k)], 0.1)
           << material;
   };
-  for (const Label label : {Label::unknown, Label::floor, Label::ceiling, Label::wall})
-    expect_colour(name(label), colour_of(label));
+  for (const Label label : all_labels) expect_colour(name(label), colour_of(label));
   expect_colour("rest", colour_of_rest());
 }
 
 TEST(MapMesh, ColoursTellLabelsApart) {
   std::set<Colour> colours = {colour_of_rest()};
-  for (const Label label : {Label::unknown, Label::floor, Label::ceiling, Label::wall})
-    colours.insert(colour_of(label));
-  EXPECT_EQ(colours.size(), 5u);
+  for (const Label label : all_labels) colours.insert(colour_of(label));
+  EXPECT_EQ(colours.size(), all_labels.size() + 1);
 }
 
 using Writer = void (*)(const std::filesystem::path&, const TriangulatedMap&, const Labels&);

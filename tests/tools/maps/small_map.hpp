@@ -45,7 +45,7 @@ inline SmallMap small_map(const Pose& world_from_room = Pose::Identity()) {
   result.map.rest.triangles = {{0, 1, 2}, {0, 2, 3}};
   for (const std::string& word : plan.labels) {
     const auto count = static_cast<double>(result.labels.polygons.size());
-    for (const Label label : {Label::unknown, Label::floor, Label::ceiling, Label::wall})
+    for (const Label label : all_labels)
       if (name(label) == word) result.labels.polygons.push_back({label, 1 - count / 16});
   }
   Room room;

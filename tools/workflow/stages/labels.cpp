@@ -28,7 +28,7 @@ RoomMap rooms_of(const Labels& labels, const PolygonMap& map, StageContext& cont
 }
 
 std::string summary(const Labelled& labelled) {
-  std::array<std::size_t, 4> count{};
+  std::array<std::size_t, all_labels.size()> count{};
   for (const PolygonLabel& polygon : labelled.labels.polygons) {
     ++count[static_cast<std::size_t>(polygon.label)];
   }
