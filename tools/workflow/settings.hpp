@@ -16,6 +16,8 @@
 #include "slam/registration/matching_scan.hpp"
 #include "slam/registration/sequence.hpp"
 #include "slam/sensor/range_limits.hpp"
+#include "tools/maps/navmesh.hpp"
+#include "tools/maps/octomap_map.hpp"
 
 namespace planum {
 
@@ -37,6 +39,19 @@ struct PolygonSettings {
   std::optional<double> max_distance;  ///< m
   std::optional<double> min_area;      ///< m^2
   std::optional<double> max_error;     ///< m
+};
+
+/// [maps]: which files are written beside polygons.json, map.ply and map.obj.
+struct MapSettings {
+  bool glb = true;         ///< map.glb
+  bool pcd = true;         ///< cloud.pcd
+  bool floor_plan = true;  ///< floorplan.svg
+  bool dxf = true;         ///< floorplan.dxf
+  bool cityjson = true;    ///< the building in CityJSON
+  bool occupancy = true;   ///< occupancy.yaml and .pgm
+  bool octomap = true;     ///< map.bt and map.ot
+  bool sdf = true;         ///< world/, for Gazebo
+  bool navmesh = true;     ///< navmesh.bin, for Detour
 };
 
 /// Every value of a project file, in the units of the program (m, rad, s). Where a module has a
@@ -71,7 +86,10 @@ struct Settings {
   ShadowParams shadows;
   LabelParams labels;
   RoomParams rooms;
+  MapSettings maps;
   OccupancyParams occupancy;
+  OctomapParams octomap;
+  NavmeshParams navmesh;  ///< its robot's height and climb are those of `occupancy`
 
   std::string truth;  ///< path, empty: none
   std::string output_directory = "out";

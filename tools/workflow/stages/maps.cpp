@@ -1,7 +1,14 @@
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "labeling/occupancy.hpp"
 #include "meshing/triangulation.hpp"
+#include "slam/core/error.hpp"
 #include "slam/io/pcd.hpp"
 #include "tools/maps/floor_plan.hpp"
 #include "tools/maps/map_glb.hpp"
@@ -14,47 +21,80 @@
 namespace planum {
 namespace {
 
+namespace fs = std::filesystem;
+
+/// One format: its (first) file, whether it is wanted, and who writes it.
+struct Exporter {
+  std::string file;
+  bool is_wanted = true;
+  std::function<void(const fs::path& file)> write;
+};
+
 /// A map for each storey; of one storey it is `occupancy.yaml`, of more `occupancy_1.yaml` (the
-/// lowest) and so on. Returns how many.
-std::size_t write_occupancy(const PolygonMap& map, const Labels& labels, StageContext& context) {
-  const std::vector<double> floors = storey_floors(map, labels);
-  if (floors.empty())
-    context.record.warnings.push_back("no occupancy map: there is no floor for a robot");
-  const auto origins = scan_origins(context.results.world.get());
-  for (std::size_t i = 0; i < floors.size(); ++i) {
-    const std::string name =
-        floors.size() == 1 ? "occupancy.yaml" : fmt::format("occupancy_{}.yaml", i + 1);
+/// lowest) and so on.
+void write_occupancy(const fs::path& path, StageContext& context) {
+  Results& results = context.results;
+  const std::vector<double> floors =
+      storey_floors(results.polygons.get(), results.labelled.get().labels);
+  if (floors.empty()) throw Error(path.string() + ": there is no floor for a robot");
+  const auto origins = scan_origins(results.world.get());
+  for (std::size_t i = 0; i < floors.size(); ++i)
     write_occupancy_map(
-        context.staging / name,
-        occupancy_grid(context.results.cloud.get(), origins, context.results.mesh.get(), floors[i],
+        floors.size() == 1 ? path : path.parent_path() / fmt::format("occupancy_{}.yaml", i + 1),
+        occupancy_grid(results.cloud.get(), origins, results.mesh.get(), floors[i],
                        context.project.settings.occupancy));
-  }
-  return floors.size();
+}
+
+/// An error of `exporter` as a warning: what is wrong with the map is no reason to have no other.
+std::string warning_of(const Exporter& exporter, const Error& error, const fs::path& staging) {
+  const std::string text = error.what(), start = (staging / exporter.file).string() + ": ";
+  return fmt::format("no {}: {}", exporter.file,
+                     text.starts_with(start) ? text.substr(start.size()) : text);
 }
 
 void work(StageContext& context) {
-  const PolygonMap& map = context.results.polygons.get();
-  const Labelled& labelled = context.results.labelled.get();
+  Results& results = context.results;
+  const MapSettings& wanted = context.project.settings.maps;
+  const PolygonMap& map = results.polygons.get();
+  const Labelled& labelled = results.labelled.get();
+  const LabelledMap labelled_map{map, labelled.labels, labelled.rooms};
   const TriangulatedMap mesh = triangulated(map);
-  write_polygons_json(context.staging / "polygons.json", {map, labelled.labels, labelled.rooms});
+
+  write_polygons_json(context.staging / "polygons.json", labelled_map);
   write_map_ply(context.staging / "map.ply", mesh, labelled.labels);
   write_map_obj(context.staging / "map.obj", mesh, labelled.labels);
-  write_map_glb(context.staging / "map.glb", mesh, {map, labelled.labels, labelled.rooms});
-  write_pcd(context.staging / "cloud.pcd",
-            with_scan_numbers(context.results.cloud.get(), context.results.world.get()));
-  if (!labelled.rooms.rooms.empty())
-    write_floor_plan_svg(context.staging / "floorplan.svg", labelled.rooms);
-  const std::size_t storeys = write_occupancy(map, labelled.labels, context);
-  context.record.summary =
-      fmt::format("polygons.json, map.ply, map.obj, map.glb, cloud.pcd, {}{} of occupancy",
-                  labelled.rooms.rooms.empty() ? "" : "floorplan.svg, ", storeys);
+  std::vector<std::string> written = {"polygons.json", "map.ply", "map.obj"};
+
+  const std::vector<Exporter> exporters = {
+      {"map.glb", wanted.glb,
+       [&](const fs::path& file) { write_map_glb(file, mesh, labelled_map); }},
+      {"cloud.pcd", wanted.pcd,
+       [&](const fs::path& file) {
+         write_pcd(file, with_scan_numbers(results.cloud.get(), results.world.get()));
+       }},
+      {"floorplan.svg", wanted.floor_plan && !labelled.rooms.rooms.empty(),
+       [&](const fs::path& file) { write_floor_plan_svg(file, labelled.rooms); }},
+      {"occupancy.yaml", wanted.occupancy,
+       [&](const fs::path& file) { write_occupancy(file, context); }},
+  };
+  for (const Exporter& exporter : exporters) {
+    if (!exporter.is_wanted) continue;
+    try {
+      exporter.write(context.staging / exporter.file);
+      written.push_back(exporter.file);
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::environment) throw;
+      context.record.warnings.push_back(warning_of(exporter, error, context.staging));
+    }
+  }
+  context.record.summary = fmt::format("{}", fmt::join(written, ", "));
 }
 
 }  // namespace
 
 Stage maps_stage() {
   return {.name = "maps",
-          .version = 5,
+          .version = 6,
           .unit = "steps",
           .needs = {"cloud", "mesh", "polygons", "labels"},
           .parameters = {"maps"},
