@@ -8,6 +8,8 @@
 namespace planum {
 namespace {
 
+constexpr int extent_directions = 16;
+
 /// Rows are the axes of the frame of LevelPolygon.
 Eigen::Matrix3d level_axes(const PolygonMap& map, const Eigen::Vector3d& up, double max_tilt) {
   Eigen::Vector3d forward = Eigen::Vector3d::Zero();
@@ -45,6 +47,17 @@ void measure(LevelPolygon& polygon) {
       polygon.plan.back().push_back(p.head<2>());
     }
   }
+  polygon.length = 0;
+  for (int k = 0; k < extent_directions; ++k) {
+    const double angle = pi * k / extent_directions;
+    const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const Eigen::Vector2d& p : polygon.plan.front()) {
+      low = std::min(low, direction.dot(p));
+      high = std::max(high, direction.dot(p));
+    }
+    polygon.length = std::max(polygon.length, high - low);
+  }
 }
 
 double side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& p) {
@@ -74,6 +87,7 @@ LabelScene label_scene(const PolygonMap& map, const Eigen::Vector3d& up, double 
     level.attitude = attitude_of(cosine, max_tilt);
     level.tilt = std::min(from_level, pi / 2 - from_level);
     level.area = polygon.area;
+    level.outer = polygon.outer;
     level.plane = {axes * polygon.plane.normal, polygon.plane.offset};
     const auto add = [&](const Ring& ring) {
       level.rings.emplace_back();
@@ -102,6 +116,18 @@ LabelScene upside_down(const LabelScene& scene) {
       polygon.attitude = Attitude::facing_up;
   }
   return turned;
+}
+
+std::optional<double> height_of_floor_below(const LabelScene& scene,
+                                            const std::vector<PolygonLabel>& labels,
+                                            const Eigen::Vector2d& place, double height) {
+  std::optional<double> highest;
+  for (std::size_t i = 0; i < scene.polygons.size(); ++i) {
+    if (labels[i].label != Label::floor || !scene.polygons[i].covers(place)) continue;
+    const double floor = scene.polygons[i].height_at(place);
+    if (floor <= height && (!highest || floor > *highest)) highest = floor;
+  }
+  return highest;
 }
 
 std::vector<PlanSegment> cross_section(const LevelPolygon& polygon, double height) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,10 +24,13 @@ struct LevelPolygon {
   Plane plane;
   std::vector<std::vector<Eigen::Vector3d>> rings;  ///< the outer one first
   std::vector<Ring2d> plan;                         ///< rings seen from above
+  std::vector<std::uint32_t> outer;                 ///< vertices of the map, of the outer ring
   Eigen::Vector3d low, high;                        ///< m, corners of the bounding box
+  double length = 0;                                ///< m, the greatest extent seen from above
 
   double middle_height() const { return (low.z() + high.z()) / 2; }
-  bool covers(const Eigen::Vector2d& p) const;  ///< seen from above
+  double mean_width() const { return length > 0 ? area / length : 0; }  ///< m, of level ones
+  bool covers(const Eigen::Vector2d& p) const;                          ///< seen from above
   /// Height of the plane above a place seen from above; not for upright ones.
   double height_at(const Eigen::Vector2d& p) const;
 };
@@ -38,6 +43,11 @@ LabelScene label_scene(const PolygonMap& map, const Eigen::Vector3d& up, double 
 
 /// The scene upside down: ceilings become floors.
 LabelScene upside_down(const LabelScene& scene);
+
+/// Height of the highest floor at or below a place, or nothing.
+std::optional<double> height_of_floor_below(const LabelScene& scene,
+                                            const std::vector<PolygonLabel>& labels,
+                                            const Eigen::Vector2d& place, double height);
 
 /// A line seen from above.
 struct PlanSegment {

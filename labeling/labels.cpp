@@ -3,10 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "labeling/label_scene.hpp"
-#include "labeling/level_labels.hpp"
-#include "labeling/wall_labels.hpp"
+#include "labeling/rules/floors.hpp"
+#include "labeling/rules/furniture.hpp"
+#include "labeling/rules/leaves.hpp"
+#include "labeling/rules/opening_parts.hpp"
+#include "labeling/rules/stairs.hpp"
+#include "labeling/rules/walls.hpp"
 #include "meshing/up_direction.hpp"
 #include "slam/core/error.hpp"
 
@@ -18,20 +23,38 @@ void check(const LabelParams& params) {
     throw Error("labels: max_tilt is " + std::to_string(params.max_tilt) +
                 " rad, must be above 0 and below 0.785");
   if (!(params.prior_up.norm() > 0)) throw Error("labels: prior_up has no direction");
-  const auto not_negative = [](const char* option, double value) {
+  const std::pair<const char*, double> lengths[] = {
+      {"same_level", params.same_level},
+      {"min_headroom", params.min_headroom},
+      {"max_raise", params.max_raise},
+      {"neighbourhood", params.neighbourhood},
+      {"max_raised_share", params.max_raised_share},
+      {"min_level_area", params.min_level_area},
+      {"min_ceiling_width", params.min_ceiling_width},
+      {"max_roof_tilt", params.max_roof_tilt},
+      {"ceiling_gap", params.ceiling_gap},
+      {"min_wall_height", params.min_wall_height},
+      {"min_wall_area", params.min_wall_area},
+      {"min_beam_length", params.min_beam_length},
+      {"min_rise", params.min_rise},
+      {"max_rise", params.max_rise},
+      {"min_going", params.min_going},
+      {"max_going", params.max_going},
+      {"min_step_width", params.min_step_width},
+      {"min_leaf_width", params.min_leaf_width},
+      {"max_leaf_width", params.max_leaf_width},
+      {"min_leaf_height", params.min_leaf_height},
+      {"max_leaf_height", params.max_leaf_height},
+      {"max_leaf_depth", params.max_leaf_depth},
+      {"min_sill", params.min_sill},
+      {"min_pane_size", params.min_pane_size},
+      {"min_furniture_height", params.min_furniture_height},
+      {"max_furniture_height", params.max_furniture_height},
+      {"max_gap_to_floor", params.max_gap_to_floor}};
+  for (const auto& [option, value] : lengths)
     if (!(value >= 0))
       throw Error("labels: " + std::string(option) + " is " + std::to_string(value) +
                   ", must be at least 0");
-  };
-  not_negative("same_level", params.same_level);
-  not_negative("min_headroom", params.min_headroom);
-  not_negative("max_raise", params.max_raise);
-  not_negative("neighbourhood", params.neighbourhood);
-  not_negative("max_raised_share", params.max_raised_share);
-  not_negative("min_level_area", params.min_level_area);
-  not_negative("ceiling_gap", params.ceiling_gap);
-  not_negative("min_wall_height", params.min_wall_height);
-  not_negative("min_wall_area", params.min_wall_area);
 }
 
 /// Empty if too little of the map is level.
@@ -43,32 +66,6 @@ std::optional<UpDirection> up_of(const PolygonMap& map, const Eigen::Vector3d& p
     areas.push_back(static_cast<float>(polygon.area));
   }
   return estimate_up(normals, areas, prior);
-}
-
-/// Labels the surfaces of one attitude whose doubt is small, if they are large or at the level of
-/// large ones.
-void label_levels(const LabelScene& scene, Attitude attitude, Label label,
-                  const std::vector<double>& doubts, const LabelParams& params,
-                  std::vector<PolygonLabel>& labels) {
-  const auto is_at_a_level = [&](std::size_t i) {
-    const LevelPolygon& it = scene.polygons[i];
-    if (it.area >= params.min_level_area) return true;
-    return std::any_of(
-        scene.polygons.begin(), scene.polygons.end(), [&](const LevelPolygon& other) {
-          const auto j = static_cast<std::size_t>(&other - scene.polygons.data());
-          return other.attitude == attitude && other.area >= params.min_level_area &&
-                 doubts[j] <= params.max_raised_share &&
-                 std::abs(other.middle_height() - it.middle_height()) < params.same_level;
-        });
-  };
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    if (scene.polygons[i].attitude != attitude) continue;
-    const double slope = 0.5 * scene.polygons[i].tilt / params.max_tilt;
-    if (doubts[i] <= params.max_raised_share && is_at_a_level(i))
-      labels[i] = {label, (1 - slope) * (1 - 0.5 * doubts[i])};
-    else
-      labels[i] = {Label::unknown, std::max(0.5, doubts[i])};
-  }
 }
 
 }  // namespace
@@ -106,12 +103,26 @@ Labels label(const PolygonMap& map, const LabelParams& params) {
     labels.up_confidence = up->confidence;
   }
   const LabelScene scene = label_scene(map, labels.up, params.max_tilt);
-  labels.polygons.assign(map.polygons.size(), {Label::unknown, 1});
-  label_levels(scene, Attitude::facing_up, Label::floor, floor_doubts(scene, params), params,
-               labels.polygons);
-  label_levels(scene, Attitude::facing_down, Label::ceiling,
-               floor_doubts(upside_down(scene), params), params, labels.polygons);
-  label_walls(map, scene, params, labels.polygons);
+  std::vector<PolygonLabel>& polygons = labels.polygons;
+  polygons.assign(map.polygons.size(), {Label::unknown, 1});
+  label_floors(scene, params, polygons);
+  label_ceilings(scene, params, polygons);
+  label_roofs(scene, params, polygons);
+  label_walls(scene, params, polygons);
+  label_soffits(scene, params, polygons);
+  label_stairs(scene, params, polygons);
+  label_leaves(scene, params, polygons);
+  label_furniture_tops(scene, params, polygons);
+  label_furniture_sides(scene, params, polygons);
+  return labels;
+}
+
+Labels with_openings(const PolygonMap& map, Labels labels, std::span<const Opening> openings) {
+  if (labels.polygons.size() != map.polygons.size())
+    throw Error("labels: " + std::to_string(map.polygons.size()) + " polygons with " +
+                std::to_string(labels.polygons.size()) + " labels");
+  label_frames(map, openings, labels.polygons);
+  label_open_leaves(map, openings, labels.polygons);
   return labels;
 }
 

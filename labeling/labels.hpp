@@ -1,12 +1,14 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "labeling/label_params.hpp"
+#include "labeling/openings.hpp"
 #include "meshing/polygon_map.hpp"
-#include "slam/core/pose.hpp"
 
 namespace planum {
 
@@ -47,25 +49,14 @@ struct Labels {
   double up_confidence = 0;                       ///< in [0, 1]
 };
 
-struct LabelParams {
-  Eigen::Vector3d prior_up = Eigen::Vector3d::UnitZ();  ///< roughly up; the scene says exactly
-  double max_tilt = radians(15);  ///< of a floor from level, of a wall from upright
-  double same_level = 0.12;       ///< m, surfaces closer in height are one level
-  double min_headroom = 1.8;      ///< m, between a floor and what is above it
-  double max_raise = 2.6;         ///< m, what is less above a floor beside it may be furniture
-  double neighbourhood = 1.0;     ///< m, how far a floor beside furniture is looked for
-  double max_raised_share = 0.6;  ///< of a surface with a lower one beside it, to be a floor
-  double min_level_area = 0.25;   ///< m^2, smaller surfaces are floor only at the level of one
-  double ceiling_gap = 0.25;      ///< m, a wall ends less than this below its ceiling
-  double min_wall_height = 1.5;   ///< m, where no ceiling tells what is a wall
-  double min_wall_area = 1.5;     ///< m^2, the same
-};
-
-/// Floors, ceilings and walls by their normals and their places in the scene (docs/labeling.md):
-/// a floor is level and looks up, no lower floor is beside most of it, and a person can stand on
-/// it; a ceiling is the same upside down; a wall is upright and ends at a ceiling, or continues one
-/// that does, or is large with nothing behind it. Labels stay the same when the scene is moved or
-/// turned. Throws Error for parameters out of range.
+/// What each polygon is by its normal and its place in the scene (docs/labeling.md). The rules, in
+/// labeling/rules, run one after the other: floors, ceilings, walls, stairs, doors and windows that
+/// are closed, furniture; what none of them knows is `unknown`. Labels stay the same when the scene
+/// is moved or turned. Throws Error for parameters out of range.
 Labels label(const PolygonMap& map, const LabelParams& params = {});
+
+/// The same labels after openings were found (find_rooms): frames, sills and leaves in and beside
+/// them become `door` and `window`. The map must be level.
+Labels with_openings(const PolygonMap& map, Labels labels, std::span<const Opening> openings);
 
 }  // namespace planum

@@ -46,18 +46,19 @@ class PlanMaker {
   /// The outside of a box without its bottom.
   void add_furniture(const Vector3d& low, const Vector3d& high) {
     const auto p = corners(low, high);
-    add("unknown", {p[4], p[5], p[7], p[6]});
-    add("unknown", {p[0], p[1], p[5], p[4]});
-    add("unknown", {p[2], p[6], p[7], p[3]});
-    add("unknown", {p[0], p[4], p[6], p[2]});
-    add("unknown", {p[1], p[3], p[7], p[5]});
+    add("furniture_horizontal", {p[4], p[5], p[7], p[6]});
+    add("furniture_vertical", {p[0], p[1], p[5], p[4]});
+    add("furniture_vertical", {p[2], p[6], p[7], p[3]});
+    add("furniture_vertical", {p[0], p[4], p[6], p[2]});
+    add("furniture_vertical", {p[1], p[3], p[7], p[5]});
   }
 
   /// A board: top and bottom.
-  void add_board(const Vector3d& low, const Vector3d& high) {
+  void add_board(const Vector3d& low, const Vector3d& high,
+                 const std::string& label = "furniture_horizontal") {
     const auto p = corners(low, high);
-    add("unknown", {p[4], p[5], p[7], p[6]});
-    add("unknown", {p[0], p[2], p[3], p[1]});
+    add(label, {p[4], p[5], p[7], p[6]});
+    add(label, {p[0], p[2], p[3], p[1]});
   }
 
   PolygonMap moved(const Pose& b_from_a) const {

@@ -52,6 +52,7 @@ void work(StageContext& context) {
   labelled.labels = label(map, context.project.settings.labels);
   context.progress.report(1, steps);
   labelled.rooms = rooms_of(labelled.labels, map, context);
+  labelled.labels = with_openings(map, std::move(labelled.labels), labelled.rooms.openings);
   context.progress.report(2, steps);
   write_result(context.result, labelled);
   context.record.summary = summary(labelled);
@@ -62,7 +63,7 @@ void work(StageContext& context) {
 
 Stage labels_stage() {
   return {.name = "labels",
-          .version = 1,
+          .version = 2,
           .unit = "steps",
           .needs = {"cloud", "polygons"},
           .parameters = {"labels", "rooms"},

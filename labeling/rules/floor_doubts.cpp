@@ -1,4 +1,4 @@
-#include "labeling/level_labels.hpp"
+#include "labeling/rules/floor_doubts.hpp"
 
 #include <cmath>
 

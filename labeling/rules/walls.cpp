@@ -1,10 +1,13 @@
-#include "labeling/wall_labels.hpp"
+#include "labeling/rules/walls.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <set>
+
+#include "labeling/rules/upright.hpp"
 
 namespace planum {
 namespace {
@@ -13,14 +16,12 @@ constexpr double min_width = 0.1;               // m, of a wall that ends at a c
 constexpr double in_front[] = {0.1, 0.4, 0.8};  // m, where the ceiling over a wall is looked for
 constexpr double behind_gap = 0.05, behind_reach = 1.2;  // m, what stands before a wall
 constexpr double same_plane = 0.1;                       // m
-const double same_direction = std::cos(radians(8));
-constexpr double ceiling_search = 3;  // m
+constexpr double ceiling_search = 3;                     // m
 
 class WallSearch {
  public:
-  WallSearch(const PolygonMap& map, const LabelScene& scene, const LabelParams& params,
-             std::vector<PolygonLabel>& labels)
-      : map_(map), scene_(scene), params_(params), labels_(labels) {}
+  WallSearch(const LabelScene& scene, const LabelParams& params, std::vector<PolygonLabel>& labels)
+      : scene_(scene), params_(params), labels_(labels) {}
 
   void run() {
     std::vector<std::size_t> open;
@@ -42,26 +43,6 @@ class WallSearch {
     // A leaning wall is less of a wall.
     const double lean = 1 - 0.5 * polygon(i).tilt / params_.max_tilt;
     labels_[i] = {label, label == Label::unknown ? confidence : confidence * lean};
-  }
-
-  Eigen::Vector2d along(const LevelPolygon& p) const {
-    return Eigen::Vector2d(-p.plane.normal.y(), p.plane.normal.x()).normalized();
-  }
-
-  /// Its extent along its horizontal direction.
-  std::pair<double, double> extent(const LevelPolygon& p, const Eigen::Vector2d& direction) const {
-    std::pair<double, double> range{std::numeric_limits<double>::infinity(),
-                                    -std::numeric_limits<double>::infinity()};
-    for (const Eigen::Vector2d& q : p.plan.front()) {
-      range.first = std::min(range.first, direction.dot(q));
-      range.second = std::max(range.second, direction.dot(q));
-    }
-    return range;
-  }
-
-  double width(const LevelPolygon& p) const {
-    const auto [from, to] = extent(p, along(p));
-    return to - from;
   }
 
   /// The height of the ceiling in front of a place on a wall, above `height`; if none is there, of
@@ -109,8 +90,11 @@ class WallSearch {
     const LevelPolygon& it = polygon(i);
     if (width(it) < 2.5 * min_width) return give(i, Label::unknown, 0.7);
     if (ends_at_top_surface(i)) return give(i, Label::unknown, 0.9);
+    if (continues_a_wall(i, sure, 2)) return give(i, Label::wall, 0.85);
     if (stands_before_another(i)) return give(i, Label::unknown, 0.8);
-    if (continues_a_wall(i, sure)) return give(i, Label::wall, 0.85);
+    if (continues_a_wall(i, sure, 0)) return give(i, Label::wall, 0.8);
+    if (is_beam(i)) return give(i, Label::wall, 0.6);
+    if (is_parapet(i)) return give(i, Label::wall, 0.55);
     const double height = it.high.z() - it.low.z();
     if (height < params_.min_wall_height || it.area < params_.min_wall_area)
       return give(i, Label::unknown, 0.5);
@@ -121,59 +105,79 @@ class WallSearch {
   bool ends_at_top_surface(std::size_t i) const {
     std::set<std::uint32_t> top;
     const double limit = polygon(i).high.z() - params_.same_level;
-    const Ring& outer = map_.polygons[i].outer;
+    const Ring& outer = polygon(i).outer;
     for (std::size_t k = 0; k < outer.size(); ++k)
       if (polygon(i).rings.front()[k].z() > limit) top.insert(outer[k]);
     for (std::size_t j = 0; j < scene_.polygons.size(); ++j) {
       if (polygon(j).attitude != Attitude::facing_up || labels_[j].label == Label::floor) continue;
       if (std::abs(polygon(j).middle_height() - polygon(i).high.z()) > params_.same_level) continue;
-      const auto shared =
-          std::count_if(map_.polygons[j].outer.begin(), map_.polygons[j].outer.end(),
-                        [&](std::uint32_t v) { return top.contains(v); });
+      const auto shared = std::count_if(polygon(j).outer.begin(), polygon(j).outer.end(),
+                                        [&](std::uint32_t v) { return top.contains(v); });
       if (shared >= 2) return true;
     }
     return false;
   }
 
-  /// Share of polygon i's width that polygon j covers too, seen along the normal of i.
-  double overlap(std::size_t i, std::size_t j) const {
-    const Eigen::Vector2d run = along(polygon(i));
-    const auto [a, b] = extent(polygon(i), run);
-    const auto [c, d] = extent(polygon(j), run);
-    return (std::min(b, d) - std::max(a, c)) / std::max(b - a, 1e-9);
-  }
-
-  /// How far polygon j is in front of polygon i's plane, at the middle of j.
-  double in_front_of(std::size_t i, std::size_t j) const {
-    return polygon(i).plane.signed_distance((polygon(j).low + polygon(j).high) / 2);
-  }
-
-  bool faces_like(std::size_t i, std::size_t j) const {
-    return j != i && polygon(j).attitude == Attitude::upright &&
-           polygon(i).plane.normal.dot(polygon(j).plane.normal) > same_direction;
-  }
-
   /// A higher upright surface closely behind, facing the same way: this one is furniture.
   bool stands_before_another(std::size_t i) const {
     for (std::size_t j = 0; j < scene_.polygons.size(); ++j) {
-      if (!faces_like(i, j)) continue;
-      const double behind = -in_front_of(i, j);
+      if (j == i || !faces_like(polygon(i), polygon(j))) continue;
+      const double behind = -in_front_of(polygon(i), polygon(j));
       if (behind < behind_gap || behind > behind_reach) continue;
-      if (polygon(j).high.z() > polygon(i).high.z() + params_.ceiling_gap && overlap(i, j) > 0.5)
+      if (polygon(j).high.z() > polygon(i).high.z() + params_.ceiling_gap &&
+          overlap(polygon(i), polygon(j)) > 0.5)
         return true;
     }
     return false;
   }
 
-  bool continues_a_wall(std::size_t i, const std::vector<PolygonLabel>& sure) const {
+  /// Whether a wall is in its plane, with which it has so many vertices in common.
+  bool continues_a_wall(std::size_t i, const std::vector<PolygonLabel>& sure,
+                        std::size_t min_shared) const {
     for (std::size_t j = 0; j < scene_.polygons.size(); ++j)
-      if (sure[j].label == Label::wall && faces_like(i, j) &&
-          std::abs(in_front_of(i, j)) < same_plane && std::abs(in_front_of(j, i)) < same_plane)
+      if (j != i && sure[j].label == Label::wall && faces_like(polygon(i), polygon(j)) &&
+          std::abs(in_front_of(polygon(i), polygon(j))) < same_plane &&
+          std::abs(in_front_of(polygon(j), polygon(i))) < same_plane &&
+          shared_vertices(polygon(i), polygon(j)) >= min_shared)
         return true;
     return false;
   }
 
-  const PolygonMap& map_;
+  /// Long, above headroom, and no ceiling above: the side of a beam or the wall above an opening.
+  bool is_beam(std::size_t i) const {
+    const LevelPolygon& it = polygon(i);
+    if (width(it) < params_.min_beam_length || ceiling_over(it, it.middle_height())) return false;
+    const Eigen::Vector2d before =
+        (it.low + it.high).head<2>() / 2 + in_front[1] * it.plane.normal.head<2>();
+    const auto floor = height_of_floor_below(scene_, labels_, before, it.low.z());
+    return floor && it.low.z() - *floor >= params_.min_headroom;
+  }
+
+  /// Long, from the floor up, and the floor ends there: low walls below windows.
+  bool is_parapet(std::size_t i) const {
+    const LevelPolygon& it = polygon(i);
+    const Extent reach = extent(it, along(it));
+    if (reach.length() < params_.min_beam_length) return false;
+    const Eigen::Vector2d normal = it.plane.normal.head<2>().normalized();
+    const double off = normal.dot(it.plan.front().front());
+    constexpr int places = 10;
+    int bounds = 0;
+    for (int k = 0; k < places; ++k) {
+      const Eigen::Vector2d foot =
+          (reach.from + reach.length() * (k + 0.5) / places) * along(it) + off * normal;
+      const auto floor_at = [&](double distance, double highest) {
+        const auto floor =
+            height_of_floor_below(scene_, labels_, foot + distance * normal, highest);
+        return floor && it.low.z() - *floor < params_.same_level;
+      };
+      const bool ends = std::none_of(std::begin(in_front), std::end(in_front), [&](double d) {
+        return floor_at(-d, it.high.z() + params_.same_level);
+      });
+      bounds += ends && floor_at(in_front[0], it.low.z() + params_.same_level);
+    }
+    return bounds >= 0.8 * places;
+  }
+
   const LabelScene& scene_;
   const LabelParams& params_;
   std::vector<PolygonLabel>& labels_;
@@ -181,9 +185,27 @@ class WallSearch {
 
 }  // namespace
 
-void label_walls(const PolygonMap& map, const LabelScene& scene, const LabelParams& params,
+void label_walls(const LabelScene& scene, const LabelParams& params,
                  std::vector<PolygonLabel>& labels) {
-  WallSearch(map, scene, params, labels).run();
+  WallSearch(scene, params, labels).run();
+}
+
+void label_soffits(const LabelScene& scene, const LabelParams& params,
+                   std::vector<PolygonLabel>& labels) {
+  constexpr double soffit_confidence = 0.6;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const LevelPolygon& it = scene.polygons[i];
+    if (it.attitude != Attitude::facing_down || labels[i].label != Label::unknown ||
+        it.mean_width() >= params.min_ceiling_width)
+      continue;
+    const auto floor =
+        height_of_floor_below(scene, labels, (it.low + it.high).head<2>() / 2, it.low.z());
+    if (!floor || it.low.z() - *floor < params.min_headroom) continue;
+    for (std::size_t j = 0; j < labels.size(); ++j)
+      if (scene.polygons[j].attitude == Attitude::upright && labels[j].label == Label::wall &&
+          shared_vertices(it, scene.polygons[j]) >= 2)
+        labels[i] = {Label::wall, soffit_confidence};
+  }
 }
 
 }  // namespace planum

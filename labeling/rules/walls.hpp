@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "labeling/label_scene.hpp"
+#include "labeling/labels.hpp"
+
+namespace planum {
+
+/// Walls: upright polygons that end at a ceiling, continue one that does, hang above headroom, or
+/// are large with nothing behind. All other upright polygons become `unknown`. Needs the labels of
+/// floors and ceilings.
+void label_walls(const LabelScene& scene, const LabelParams& params,
+                 std::vector<PolygonLabel>& labels);
+
+/// Undersides of beams and lintels: narrow surfaces that look down above headroom, at the edge of a
+/// wall, become wall. Needs the labels of floors and walls.
+void label_soffits(const LabelScene& scene, const LabelParams& params,
+                   std::vector<PolygonLabel>& labels);
+
+}  // namespace planum
