@@ -65,7 +65,8 @@ void read_face(TextReader& reader, Reading& reading) {
   }
 }
 
-void check(const LabelledMesh& labelled, const std::filesystem::path& path) {
+void check(const LabelledMesh& labelled, const TextureCoordinates& texture,
+           const std::filesystem::path& path) {
   for (const std::string& name : labelled.names)
     if (name.empty() || name.find_first_of("\r\n") != std::string::npos || name.front() == ' ' ||
         name.back() == ' ')
@@ -77,6 +78,13 @@ void check(const LabelledMesh& labelled, const std::filesystem::path& path) {
   for (const std::uint32_t group : labelled.group)
     if (group >= labelled.names.size())
       throw Error(fmt::format("{}: group {} has no name", path.string(), group));
+  if (!texture.corners.empty() && texture.corners.size() != labelled.mesh.triangles.size())
+    throw Error(fmt::format("{}: {} triangles, {} of them with texture coordinates", path.string(),
+                            labelled.mesh.triangles.size(), texture.corners.size()));
+  for (const auto& corners : texture.corners)
+    for (const std::uint32_t corner : corners)
+      if (corner != TextureCoordinates::none && corner >= texture.places.size())
+        throw Error(fmt::format("{}: there are no texture coordinates {}", path.string(), corner));
 }
 
 }  // namespace
@@ -100,20 +108,28 @@ LabelledMesh read_obj(const std::filesystem::path& path) {
 
 void write_obj(const std::filesystem::path& path, const LabelledMesh& labelled,
                const ObjParams& params) {
-  check(labelled, path);
+  check(labelled, params.texture, path);
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
   if (!params.material_library.empty()) fmt::format_to(out, "mtllib {}\n", params.material_library);
   for (const Eigen::Vector3f& v : labelled.mesh.vertices)
     fmt::format_to(out, "v {} {} {}\n", v.x(), v.y(), v.z());
+  for (const Eigen::Vector2f& p : params.texture.places)
+    fmt::format_to(out, "vt {:.4f} {:.4f}\n", p.x(), p.y());
   for (std::size_t i = 0; i < labelled.mesh.triangles.size(); ++i) {
     const std::uint32_t group = labelled.group[i];
     if (i == 0 || group != labelled.group[i - 1])
       fmt::format_to(out, "usemtl {}\n", labelled.names[group]);
-    const auto& [a, b, c] = labelled.mesh.triangles[i];
-    // Up to 2^32: one more than fits the type.
-    fmt::format_to(out, "f {} {} {}\n", std::uint64_t{a} + 1, std::uint64_t{b} + 1,
-                   std::uint64_t{c} + 1);
+    fmt::format_to(out, "f");
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Up to 2^32: one more than fits the type.
+      fmt::format_to(out, " {}", std::uint64_t{labelled.mesh.triangles[i][k]} + 1);
+      if (params.texture.corners.empty()) continue;
+      if (const std::uint32_t place = params.texture.corners[i][k];
+          place != TextureCoordinates::none)
+        fmt::format_to(out, "/{}", std::uint64_t{place} + 1);
+    }
+    text.push_back('\n');
   }
   write_file_atomically(path, {text.data(), text.size()});
 }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "meshing/triangulation.hpp"
 #include "tools/maps/labelled_map.hpp"
+#include "tools/maps/texture_frames.hpp"
 
 namespace planum {
 
@@ -14,8 +16,9 @@ void write_map_ply(const std::filesystem::path& path, const TriangulatedMap& mes
                    const Labels& labels);
 
 /// Writes PATH and, beside it, the same name with .mtl: one material a label ("floor", "wall" ...;
-/// "rest" for what is no polygon).
+/// "rest" for what is no polygon). With a frame for each polygon (texture_frames) the materials
+/// have pictures, textures/LABEL.png beside PATH; without, the colours of the labels.
 void write_map_obj(const std::filesystem::path& path, const TriangulatedMap& mesh,
-                   const Labels& labels);
+                   const Labels& labels, const std::vector<TextureFrame>& frames = {});
 
 }  // namespace planum

@@ -43,6 +43,7 @@ struct PolygonSettings {
 
 /// [maps]: which files are written beside polygons.json, map.ply and map.obj.
 struct MapSettings {
+  bool textures = true;    ///< of map.obj and map.glb; else the colours of the labels
   bool glb = true;         ///< map.glb
   bool pcd = true;         ///< cloud.pcd
   bool floor_plan = true;  ///< floorplan.svg

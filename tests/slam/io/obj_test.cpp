@@ -78,6 +78,29 @@ TEST(Obj, ComesBackAsItWasWritten) {
   EXPECT_EQ(read.group, written.group);
 }
 
+TEST(Obj, HasTextureCoordinatesWhereThereAreSome) {
+  const TemporaryDirectory directory;
+  const LabelledMesh mesh = mesh_from(square + "f 1 2 3\nf 1 3 4\n");
+  TextureCoordinates texture;
+  texture.places = {{0, 0}, {0.5f, 0}, {0.5f, -1.25f}};
+  constexpr std::uint32_t none = TextureCoordinates::none;
+  texture.corners = {{0, 1, 2}, {none, none, none}};
+  write_obj(directory / "map.obj", mesh, {.texture = texture});
+  const std::string text = testing::text_of(directory / "map.obj");
+  EXPECT_NE(text.find("vt 0.0000 0.0000\nvt 0.5000 0.0000\nvt 0.5000 -1.2500\n"),
+            std::string::npos);
+  EXPECT_NE(text.find("f 1/1 2/2 3/3\nf 1 3 4\n"), std::string::npos);
+  EXPECT_EQ(read_obj(directory / "map.obj").mesh.triangles, mesh.mesh.triangles);
+
+  texture.corners[0][1] = 3;
+  EXPECT_NE(testing::error_of([&] { write_obj(directory / "b.obj", mesh, {.texture = texture}); }),
+            "");
+  texture.corners.pop_back();
+  EXPECT_NE(testing::error_of([&] { write_obj(directory / "b.obj", mesh, {.texture = texture}); }),
+            "");
+  EXPECT_FALSE(std::filesystem::exists(directory / "b.obj"));
+}
+
 TEST(Obj, IsNotWrittenWithNamesThatWouldNotComeBack) {
   const TemporaryDirectory directory;
   LabelledMesh mesh = mesh_from(square + "f 1 2 3\n");

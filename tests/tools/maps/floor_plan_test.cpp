@@ -1,5 +1,4 @@
-#include "tools/maps/floor_plan.hpp"
-
+#include <algorithm>
 #include <cmath>
 #include <regex>
 
@@ -8,46 +7,19 @@
 #include "slam/core/error.hpp"
 #include "tests/slam/io/io_test_support.hpp"
 #include "tests/support/shared_data.hpp"
+#include "tests/tools/maps/two_rooms.hpp"
+#include "tools/maps/floor_plan_svg.hpp"
 
 namespace planum {
 namespace {
 
 using Eigen::Vector3d;
 using testing::TemporaryDirectory;
-
-/// Two rooms beside each other, 4 x 3 m and 2 x 3 m, with a door and a window, turned and moved.
-RoomMap two_rooms(double yaw, const Vector3d& shift) {
-  const Pose place = pose_from_xyz_ypr(shift, radians(yaw), 0, 0);
-  const auto room = [&](const char* name, double x, double size) {
-    Room result;
-    result.name = name;
-    result.centre = place * Vector3d(x + size / 2, 1.5, 1.25);
-    result.along = place.linear() * (size > 3 ? Vector3d::UnitX() : Vector3d::UnitY());
-    result.area = 3 * size;
-    result.width = std::min(size, 3.0);
-    result.depth = std::max(size, 3.0);
-    result.height = 2.5;
-    for (const Vector3d& p : {Vector3d(x, 0, 0), {x + size, 0, 0}, {x + size, 3, 0}, {x, 3, 0}})
-      result.outline.push_back(place * p);
-    return result;
-  };
-  RoomMap rooms;
-  rooms.rooms = {room("kitchen & <more>", 0, 4), room("room 2", 4.2, 2)};
-  Opening door, window;
-  door.position = place * Vector3d(4.1, 1.5, 1);
-  door.across = place.linear() * Vector3d::UnitX();
-  door.width = 0.9;
-  door.thickness = 0.2;
-  window = door;
-  window.kind = OpeningKind::window;
-  window.position = place * Vector3d(-0.1, 1.5, 1.5);
-  rooms.openings = {door, window};
-  return rooms;
-}
+using testing::two_rooms;
 
 std::string drawn(const RoomMap& rooms) {
   const TemporaryDirectory directory;
-  write_floor_plan_svg(directory / "plan.svg", rooms);
+  write_floor_plan_svg(directory / "plan.svg", plan_drawing(rooms, 0));
   return testing::text_of(directory / "plan.svg");
 }
 
@@ -99,10 +71,42 @@ TEST(FloorPlan, IsToScaleAndLiesLevelHoweverTheWorldIsTurned) {
   }
 }
 
-TEST(FloorPlan, RefusesAMapWithoutRooms) {
-  const TemporaryDirectory directory;
-  EXPECT_THROW(write_floor_plan_svg(directory / "plan.svg", {}), Error);
-  EXPECT_FALSE(std::filesystem::exists(directory / "plan.svg"));
+TEST(FloorPlan, TurnsLeavesInTheirSwingToTheWall) {
+  const RoomMap rooms = two_rooms(75, {3, 4, 0});
+  const PlanDrawing drawing = plan_drawing(rooms, 0);
+  ASSERT_EQ(drawing.quarters.size(), 1u);
+  const PlanQuarter& swing = drawing.quarters[0];
+  const Eigen::Vector2d open = swing.from - swing.centre, shut = swing.to - swing.centre;
+  EXPECT_NEAR(open.norm(), 0.9, 1e-9);
+  EXPECT_NEAR((Eigen::Rotation2Dd(pi / 2) * open - shut).norm(), 0, 1e-9);
+  const auto leaf = std::find_if(drawing.lines.begin(), drawing.lines.end(),
+                                 [](const PlanLine& line) { return line.part == PlanPart::leaf; });
+  ASSERT_NE(leaf, drawing.lines.end());
+  EXPECT_NEAR((leaf->from - swing.centre).norm() + (leaf->to - swing.from).norm(), 0, 1e-9);
+}
+
+TEST(FloorPlan, DrawsEachStoreyOnPaperOfTheSamePlaceAndSize) {
+  RoomMap rooms = two_rooms(20, {0, 0, 0});
+  rooms.storeys = {0, 3};
+  rooms.rooms[1].storey = 1;
+  rooms.openings[0].rooms = {1};
+  const PlanDrawing ground = plan_drawing(rooms, 0), upper = plan_drawing(rooms, 1);
+  EXPECT_EQ(ground.turn, upper.turn);
+  EXPECT_TRUE(ground.paper.isApprox(upper.paper));
+  const auto count_of = [](const PlanDrawing& drawing, PlanPart part) {
+    return std::count_if(drawing.polygons.begin(), drawing.polygons.end(),
+                         [&](const PlanPolygon& polygon) { return polygon.part == part; });
+  };
+  EXPECT_EQ(count_of(ground, PlanPart::room), 1);
+  EXPECT_EQ(count_of(upper, PlanPart::room), 1);
+  EXPECT_EQ(count_of(ground, PlanPart::window), 1);
+  EXPECT_EQ(count_of(ground, PlanPart::doorway), 0);
+  EXPECT_EQ(count_of(upper, PlanPart::doorway), 1);
+}
+
+TEST(FloorPlan, RefusesAStoreyWithoutRooms) {
+  EXPECT_THROW(plan_drawing({}, 0), Error);
+  EXPECT_THROW(plan_drawing(two_rooms(0, Vector3d::Zero()), 1), Error);
 }
 
 }  // namespace

@@ -136,6 +136,41 @@ TEST(MapGlb, ShowsFilledShadowsThroughAMaterialOfTheirOwn) {
   EXPECT_EQ(glb.json["materials"][material]["alphaMode"], "BLEND");
 }
 
+TEST(MapGlb, HoldsTheTexturesOfItsLabels) {
+  const TemporaryDirectory directory;
+  const SmallMap small = small_map();
+  const auto frames = texture_frames(small.map, small.labels);
+  write_map_glb(directory / "map.glb", triangulated(small.map), small.labelled(), frames);
+  const Glb glb(directory / "map.glb");
+  ASSERT_EQ(glb.json["images"].size(), 4u);  // unknown, floor, ceiling, wall
+  for (const Json& image : glb.json["images"]) {
+    const Json& view = glb.json["bufferViews"][image["bufferView"].get<std::size_t>()];
+    EXPECT_EQ(view["byteOffset"].get<std::size_t>() % 4, 0u);
+    EXPECT_EQ(glb.data.substr(view["byteOffset"].get<std::size_t>(), 4), "\x89PNG");
+  }
+  for (std::size_t p = 0; p < 10; ++p) {
+    const Json& node = glb.json["nodes"][p + 1];
+    const Json& primitive = glb.json["meshes"][node["mesh"].get<std::size_t>()]["primitives"][0];
+    const Json& material = glb.json["materials"][primitive["material"].get<std::size_t>()];
+    const std::size_t texture = material["pbrMetallicRoughness"]["baseColorTexture"]["index"];
+    const std::size_t image = glb.json["textures"][texture]["source"];
+    EXPECT_EQ(glb.json["images"][image]["name"], node["extras"]["label"]);
+    const std::size_t positions = primitive["attributes"]["POSITION"];
+    const std::size_t coordinates = primitive["attributes"]["TEXCOORD_0"];
+    ASSERT_EQ(glb.json["accessors"][coordinates]["count"],
+              glb.json["accessors"][positions]["count"]);
+    for (std::size_t i = 0; i < glb.json["accessors"][positions]["count"]; ++i) {
+      Eigen::Vector2f place;
+      std::memcpy(place.data(), glb.data.data() + glb.place(coordinates, i, 8), 8);
+      const Eigen::Vector2d expected = frames[p].at(glb.position(positions, i).cast<double>());
+      EXPECT_NEAR(place.x(), expected.x(), 1e-5);
+      EXPECT_NEAR(place.y(), 1 - expected.y(), 1e-5);
+    }
+  }
+  const Json& rest = glb.json["meshes"][glb.json["nodes"][11]["mesh"].get<std::size_t>()];
+  EXPECT_FALSE(rest["primitives"][0]["attributes"].contains("TEXCOORD_0"));
+}
+
 TEST(MapGlb, RefusesWhatDoesNotMatchOrIsEmpty) {
   const TemporaryDirectory directory;
   const SmallMap small = small_map();
@@ -144,6 +179,9 @@ TEST(MapGlb, RefusesWhatDoesNotMatchOrIsEmpty) {
   EXPECT_THROW(write_map_glb(directory / "a.glb", triangles, small.labelled()), Error);
   triangles.polygon.pop_back();
   EXPECT_THROW(write_map_glb(directory / "a.glb", triangles, small.labelled()), Error);
+  EXPECT_THROW(write_map_glb(directory / "a.glb", triangulated(small.map), small.labelled(),
+                             std::vector<TextureFrame>(3)),
+               Error);
   const SmallMap none;
   EXPECT_THROW(write_map_glb(directory / "a.glb", {}, none.labelled()), Error);
   EXPECT_FALSE(std::filesystem::exists(directory / "a.glb"));

@@ -1,6 +1,7 @@
 #include "tools/maps/map_mesh.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <set>
@@ -16,6 +17,7 @@
 #include "tests/support/shared_data.hpp"
 #include "tests/tools/maps/small_map.hpp"
 #include "tools/maps/label_colours.hpp"
+#include "tools/maps/label_textures.hpp"
 
 namespace planum {
 namespace {
@@ -188,6 +190,58 @@ TEST(MapMesh, ObjFindsEveryMaterialInTheLibraryBesideIt) {
   expect_colour("rest", colour_of_rest());
 }
 
+TEST(MapMesh, ObjHasTexturesOfTheirRealSize) {
+  const TemporaryDirectory directory;
+  const SmallMap small = small_map(testing::some_pose(3));
+  const TriangulatedMap triangles = triangulated(small.map);
+  write_map_obj(directory / "map.obj", triangles, small.labels,
+                texture_frames(small.map, small.labels));
+  const std::string materials = testing::text_of(directory / "map.mtl");
+  for (const Label label : all_labels) {
+    const std::string picture = std::string("textures/") + name(label) + ".png";
+    EXPECT_NE(materials.find("map_Kd " + picture + "\n"), std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(directory / picture));
+  }
+  // The area of a triangle in its picture is that in the map.
+  std::istringstream lines(testing::text_of(directory / "map.obj"));
+  std::vector<Eigen::Vector2d> places;
+  std::size_t triangle = 0;
+  for (std::string word; lines >> word;) {
+    if (word == "vt") {
+      Eigen::Vector2d& place = places.emplace_back();
+      lines >> place.x() >> place.y();
+    } else if (word == "f") {
+      std::array<std::string, 3> corners;
+      for (std::string& corner : corners) lines >> corner;
+      const std::uint32_t polygon = triangles.polygon[triangle++];
+      if (polygon == TriangulatedMap::rest) {
+        EXPECT_EQ(corners[0].find('/'), std::string::npos);
+        continue;
+      }
+      std::array<Eigen::Vector2d, 3> p;
+      for (std::size_t k = 0; k < 3; ++k)
+        p[k] = places.at(std::stoul(corners[k].substr(corners[k].find('/') + 1)) - 1);
+      const Eigen::Vector2d a = p[1] - p[0], b = p[2] - p[0];
+      const double size = texture_size(small.labels.polygons[polygon].label);
+      EXPECT_NEAR(std::abs(a.x() * b.y() - a.y() * b.x()) / 2 * size * size,
+                  area_of(triangles.mesh, triangle - 1), 2e-3);
+    }
+  }
+  EXPECT_EQ(triangle, triangles.mesh.triangles.size());
+  const LabelledMesh read = read_obj(directory / "map.obj");
+  EXPECT_EQ(read.mesh.triangles, triangles.mesh.triangles);
+}
+
+TEST(MapMesh, ObjRefusesTexturesOfAnotherMap) {
+  const TemporaryDirectory directory;
+  const SmallMap small = small_map();
+  EXPECT_EQ(testing::error_of([&] {
+              write_map_obj(directory / "map.obj", triangulated(small.map), small.labels,
+                            std::vector<TextureFrame>(3));
+            }),
+            "map: 10 polygons have a label, 3 have a texture");
+}
+
 TEST(MapMesh, ColoursTellLabelsApart) {
   std::set<Colour> colours = {colour_of_rest()};
   for (const Label label : all_labels) colours.insert(colour_of(label));
@@ -195,7 +249,9 @@ TEST(MapMesh, ColoursTellLabelsApart) {
 }
 
 using Writer = void (*)(const std::filesystem::path&, const TriangulatedMap&, const Labels&);
-constexpr std::array<Writer, 2> writers = {write_map_ply, write_map_obj};
+constexpr std::array<Writer, 2> writers = {
+    write_map_ply, [](const std::filesystem::path& path, const TriangulatedMap& mesh,
+                      const Labels& labels) { write_map_obj(path, mesh, labels); }};
 
 TEST(MapMesh, SaysWhenLabelsAreOfAnotherMap) {
   const TemporaryDirectory directory;

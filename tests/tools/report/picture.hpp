@@ -22,13 +22,13 @@ struct Picture {
   }
 };
 
-/// Any PNG file, by libpng; the test fails if it is none.
-inline Picture read_png(const std::filesystem::path& path) {
+/// Any PNG file, by libpng; the test fails if it is none, or if it is not of the format.
+inline Picture read_png(const std::filesystem::path& path, png_uint_32 format = PNG_FORMAT_RGB) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   Picture picture;
   if (png_image_begin_read_from_file(&image, path.c_str())) {
-    EXPECT_EQ(image.format, PNG_FORMAT_RGB) << "8 bits of red, green and blue";
+    EXPECT_EQ(image.format, format) << "by default 8 bits of red, green and blue";
     image.format = PNG_FORMAT_RGB;
     picture.width = static_cast<int>(image.width);
     picture.height = static_cast<int>(image.height);

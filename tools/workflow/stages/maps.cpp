@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -10,11 +11,14 @@
 #include "meshing/triangulation.hpp"
 #include "slam/core/error.hpp"
 #include "slam/io/pcd.hpp"
-#include "tools/maps/floor_plan.hpp"
+#include "tools/maps/city_json.hpp"
+#include "tools/maps/floor_plan_dxf.hpp"
+#include "tools/maps/floor_plan_svg.hpp"
 #include "tools/maps/map_glb.hpp"
 #include "tools/maps/map_mesh.hpp"
 #include "tools/maps/occupancy_map.hpp"
 #include "tools/maps/polygons_json.hpp"
+#include "tools/maps/texture_frames.hpp"
 #include "tools/workflow/results.hpp"
 #include "tools/workflow/stages/stages.hpp"
 
@@ -45,6 +49,19 @@ void write_occupancy(const fs::path& path, StageContext& context) {
                        context.project.settings.occupancy));
 }
 
+/// A plan for each storey that has a room; of one storey it is `path`, of more floorplan_1 (the
+/// lowest) and so on.
+void write_floor_plans(const fs::path& path, const RoomMap& rooms,
+                       void (*write)(const fs::path&, const PlanDrawing&)) {
+  std::set<std::size_t> storeys;
+  for (const Room& room : rooms.rooms) storeys.insert(room.storey);
+  for (const std::size_t storey : storeys) {
+    const std::string name =
+        fmt::format("{}_{}{}", path.stem().string(), storey + 1, path.extension().string());
+    write(rooms.storeys.size() > 1 ? path.parent_path() / name : path, plan_drawing(rooms, storey));
+  }
+}
+
 /// An error of `exporter` as a warning: what is wrong with the map is no reason to have no other.
 std::string warning_of(const Exporter& exporter, const Error& error, const fs::path& staging) {
   const std::string text = error.what(), start = (staging / exporter.file).string() + ": ";
@@ -59,21 +76,31 @@ void work(StageContext& context) {
   const Labelled& labelled = results.labelled.get();
   const LabelledMap labelled_map{map, labelled.labels, labelled.rooms};
   const TriangulatedMap mesh = triangulated(map);
+  const std::vector<TextureFrame> frames =
+      wanted.textures ? texture_frames(map, labelled.labels) : std::vector<TextureFrame>();
 
   write_polygons_json(context.staging / "polygons.json", labelled_map);
   write_map_ply(context.staging / "map.ply", mesh, labelled.labels);
-  write_map_obj(context.staging / "map.obj", mesh, labelled.labels);
+  write_map_obj(context.staging / "map.obj", mesh, labelled.labels, frames);
   std::vector<std::string> written = {"polygons.json", "map.ply", "map.obj"};
 
   const std::vector<Exporter> exporters = {
       {"map.glb", wanted.glb,
-       [&](const fs::path& file) { write_map_glb(file, mesh, labelled_map); }},
+       [&](const fs::path& file) { write_map_glb(file, mesh, labelled_map, frames); }},
       {"cloud.pcd", wanted.pcd,
        [&](const fs::path& file) {
          write_pcd(file, with_scan_numbers(results.cloud.get(), results.world.get()));
        }},
       {"floorplan.svg", wanted.floor_plan && !labelled.rooms.rooms.empty(),
-       [&](const fs::path& file) { write_floor_plan_svg(file, labelled.rooms); }},
+       [&](const fs::path& file) {
+         write_floor_plans(file, labelled.rooms, write_floor_plan_svg);
+       }},
+      {"floorplan.dxf", wanted.dxf && !labelled.rooms.rooms.empty(),
+       [&](const fs::path& file) {
+         write_floor_plans(file, labelled.rooms, write_floor_plan_dxf);
+       }},
+      {"map.city.json", wanted.cityjson,
+       [&](const fs::path& file) { write_city_json(file, labelled_map); }},
       {"occupancy.yaml", wanted.occupancy,
        [&](const fs::path& file) { write_occupancy(file, context); }},
   };
