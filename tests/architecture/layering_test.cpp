@@ -26,9 +26,9 @@ const std::map<std::string, std::set<std::string>> allowed = {
 };
 
 // Libraries that must not show in headers: a change of one must not reach the users of ours.
-const std::vector<std::string> hidden_libraries = {"flann/", "ceres/",  "cholmod",  "OpenMesh/",
-                                                   "embree", "geos",    "nlohmann", "toml++",
-                                                   "CLI",    "spdlog/", "png.h",    "omp.h"};
+const std::vector<std::string> hidden_libraries = {
+    "flann/", "ceres/",  "cholmod", "OpenMesh/", "embree",   "geos",   "nlohmann", "toml++",
+    "CLI",    "spdlog/", "png.h",   "omp.h",     "octomap/", "Recast", "Detour",   "sdf/"};
 
 /// The layer of a path relative to the root, "tools" for all of tools, "" for what is no layer.
 std::string layer_of(const std::string& path) {

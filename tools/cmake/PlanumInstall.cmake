@@ -9,4 +9,5 @@ install(EXPORT planum_targets NAMESPACE planum:: DESTINATION ${CMAKE_INSTALL_LIB
   FILE planumTargets.cmake)
 install(FILES ${PROJECT_BINARY_DIR}/planumConfig.cmake ${PROJECT_BINARY_DIR}/planumConfigVersion.cmake
   tools/cmake/FindCHOLMOD.cmake tools/cmake/FindGEOS_C.cmake
+  tools/cmake/FindRecast.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/planum)

@@ -16,8 +16,11 @@
 #include "tools/maps/floor_plan_svg.hpp"
 #include "tools/maps/map_glb.hpp"
 #include "tools/maps/map_mesh.hpp"
+#include "tools/maps/navmesh.hpp"
 #include "tools/maps/occupancy_map.hpp"
+#include "tools/maps/octomap_map.hpp"
 #include "tools/maps/polygons_json.hpp"
+#include "tools/maps/sdf_world.hpp"
 #include "tools/maps/texture_frames.hpp"
 #include "tools/workflow/results.hpp"
 #include "tools/workflow/stages/stages.hpp"
@@ -71,7 +74,8 @@ std::string warning_of(const Exporter& exporter, const Error& error, const fs::p
 
 void work(StageContext& context) {
   Results& results = context.results;
-  const MapSettings& wanted = context.project.settings.maps;
+  const Settings& settings = context.project.settings;
+  const MapSettings& wanted = settings.maps;
   const PolygonMap& map = results.polygons.get();
   const Labelled& labelled = results.labelled.get();
   const LabelledMap labelled_map{map, labelled.labels, labelled.rooms};
@@ -103,6 +107,20 @@ void work(StageContext& context) {
        [&](const fs::path& file) { write_city_json(file, labelled_map); }},
       {"occupancy.yaml", wanted.occupancy,
        [&](const fs::path& file) { write_occupancy(file, context); }},
+      {"map.bt", wanted.octomap,
+       [&](const fs::path& file) {
+         write_octomap(file, results.cloud.get(), scan_origins(results.world.get()),
+                       settings.octomap);
+       }},
+      {"navmesh.bin", wanted.navmesh,
+       [&](const fs::path& file) {
+         NavmeshParams params = settings.navmesh;
+         params.robot_height = settings.occupancy.high;
+         params.robot_climb = settings.occupancy.low;
+         write_navmesh(file, mesh, labelled_map, params);
+       }},
+      {"world/world.sdf", wanted.sdf,
+       [&](const fs::path& file) { write_sdf_world(file, mesh, labelled_map); }},
   };
   for (const Exporter& exporter : exporters) {
     if (!exporter.is_wanted) continue;
