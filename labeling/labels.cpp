@@ -109,6 +109,7 @@ Labels label(const PolygonMap& map, const LabelParams& params) {
   label_ceilings(scene, params, polygons);
   label_roofs(scene, params, polygons);
   label_walls(scene, params, polygons);
+  label_wall_ends(scene, params, polygons);
   label_soffits(scene, params, polygons);
   label_stairs(scene, params, polygons);
   label_leaves(scene, params, polygons);

@@ -17,6 +17,8 @@ constexpr double max_above_floor = 0.5;  // m, lower edge of a leaf, which may b
 constexpr double min_width_share = 0.7, max_width_share = 1.1;
 constexpr double frame_confidence = 0.9, leaf_confidence = 0.8;
 constexpr double sure_wall = 0.8;  // what ends at a ceiling, or goes on in a wall, is no leaf
+constexpr double max_leaf_thickness = 0.08, max_wall_thickness = 0.7;  // m
+constexpr double max_turn = radians(8);  // between the faces of a wall
 const double max_leaf_lean = std::sin(radians(8));
 
 /// An opening as a box: along the wall, through it, up; the middle of its bottom is the origin.
@@ -92,6 +94,32 @@ bool is_leaf_of(const PolygonMap& map, const MapPolygon& polygon, const Opening&
   return false;
 }
 
+/// Whether the other face of the same wall is behind.
+bool is_face_of_wall(const PolygonMap& map, std::size_t leaf,
+                     const std::vector<PolygonLabel>& labels) {
+  const Plane& plane = map.polygons[leaf].plane;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const std::uint32_t v : map.polygons[leaf].outer) middle += map.vertices[v];
+  middle /= static_cast<double>(map.polygons[leaf].outer.size());
+  const Eigen::Vector2d run = Eigen::Vector2d(-plane.normal.y(), plane.normal.x()).normalized();
+  for (std::size_t j = 0; j < map.polygons.size(); ++j) {
+    const MapPolygon& back = map.polygons[j];
+    if (labels[j].label != Label::wall || labels[j].confidence < sure_wall ||
+        back.plane.normal.dot(plane.normal) > -std::cos(max_turn))
+      continue;
+    const double thickness = -back.plane.signed_distance(middle);
+    if (thickness < max_leaf_thickness || thickness > max_wall_thickness) continue;
+    double from = HUGE_VAL, to = -HUGE_VAL;
+    for (const std::uint32_t v : back.outer) {
+      from = std::min(from, run.dot(map.vertices[v].head<2>()));
+      to = std::max(to, run.dot(map.vertices[v].head<2>()));
+    }
+    const double place = run.dot(middle.head<2>());
+    if (place > from && place < to) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void label_frames(const PolygonMap& map, std::span<const Opening> openings,
@@ -110,7 +138,7 @@ void label_open_leaves(const PolygonMap& map, std::span<const Opening> openings,
     if (opening.kind != OpeningKind::door) continue;
     for (std::size_t i = 0; i < map.polygons.size(); ++i)
       if (labels[i].label != Label::door && labels[i].confidence < sure_wall &&
-          is_leaf_of(map, map.polygons[i], opening))
+          is_leaf_of(map, map.polygons[i], opening) && !is_face_of_wall(map, i, labels))
         labels[i] = {Label::door, leaf_confidence};
   }
 }

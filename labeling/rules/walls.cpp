@@ -16,7 +16,9 @@ constexpr double min_width = 0.1;               // m, of a wall that ends at a c
 constexpr double in_front[] = {0.1, 0.4, 0.8};  // m, where the ceiling over a wall is looked for
 constexpr double behind_gap = 0.05, behind_reach = 1.2;  // m, what stands before a wall
 constexpr double same_plane = 0.1;                       // m
-constexpr double ceiling_search = 3;                     // m
+constexpr double thickness_of_walls[] = {0.06, 0.3};     // m, of those known by their faces
+const double opposite = std::cos(radians(8));
+constexpr double ceiling_search = 3;  // m
 
 class WallSearch {
  public:
@@ -93,6 +95,7 @@ class WallSearch {
     if (continues_a_wall(i, sure, 2)) return give(i, Label::wall, 0.85);
     if (stands_before_another(i)) return give(i, Label::unknown, 0.8);
     if (continues_a_wall(i, sure, 0)) return give(i, Label::wall, 0.8);
+    if (is_other_face_of_wall(i, sure)) return give(i, Label::wall, 0.7);
     if (is_beam(i)) return give(i, Label::wall, 0.6);
     if (is_parapet(i)) return give(i, Label::wall, 0.55);
     const double height = it.high.z() - it.low.z();
@@ -143,6 +146,22 @@ class WallSearch {
     return false;
   }
 
+  /// Whether the other face of a wall is behind; upright enough not to be a skirting or a radiator.
+  bool is_other_face_of_wall(std::size_t i, const std::vector<PolygonLabel>& sure) const {
+    if (polygon(i).high.z() - polygon(i).low.z() < params_.min_wall_height) return false;
+    for (std::size_t j = 0; j < scene_.polygons.size(); ++j) {
+      if (sure[j].label != Label::wall ||
+          polygon(i).plane.normal.dot(polygon(j).plane.normal) > -opposite)
+        continue;
+      const double thickness =
+          -polygon(j).plane.signed_distance((polygon(i).low + polygon(i).high) / 2);
+      if (thickness > thickness_of_walls[0] && thickness < thickness_of_walls[1] &&
+          overlap(polygon(i), polygon(j)) > 0.5)
+        return true;
+    }
+    return false;
+  }
+
   /// Long, above headroom, and no ceiling above: the side of a beam or the wall above an opening.
   bool is_beam(std::size_t i) const {
     const LevelPolygon& it = polygon(i);
@@ -188,6 +207,23 @@ class WallSearch {
 void label_walls(const LabelScene& scene, const LabelParams& params,
                  std::vector<PolygonLabel>& labels) {
   WallSearch(scene, params, labels).run();
+}
+
+void label_wall_ends(const LabelScene& scene, const LabelParams& params,
+                     std::vector<PolygonLabel>& labels) {
+  constexpr double end_confidence = 0.6, max_width = 0.45;  // m, as thick as walls are
+  const std::vector<PolygonLabel> before = labels;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const LevelPolygon& it = scene.polygons[i];
+    if (it.attitude != Attitude::upright || before[i].label != Label::unknown ||
+        width(it) > max_width || it.high.z() - it.low.z() < params.min_wall_height)
+      continue;
+    int walls = 0;
+    for (std::size_t j = 0; j < labels.size(); ++j)
+      walls += before[j].label == Label::wall && scene.polygons[j].attitude == Attitude::upright &&
+               shared_vertices(it, scene.polygons[j]) >= 2;
+    if (walls >= 2) labels[i] = {Label::wall, end_confidence};
+  }
 }
 
 void label_soffits(const LabelScene& scene, const LabelParams& params,

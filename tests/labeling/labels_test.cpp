@@ -65,9 +65,9 @@ PlanMaker room_and_hall() {
   wall_with_door(7, 0, 6, 2.99, true);
   wall_with_door(7.15, -1.5, 7.5, 2.6, false);
   plan.add("wall", {{9.15, -1.5, 0}, {9.15, -1.5, 2.6}, {9.15, 7.5, 2.6}, {9.15, 7.5, 0}});
-  // Jambs and lintel.
-  plan.add("unknown", {{7, 1.2, 0}, {7, 1.2, 2}, {7.15, 1.2, 2}, {7.15, 1.2, 0}});
-  plan.add("unknown", {{7, 2.2, 0}, {7.15, 2.2, 0}, {7.15, 2.2, 2}, {7, 2.2, 2}});
+  // Jambs and lintel: ends of walls as long as nobody knows of the door.
+  plan.add("wall", {{7, 1.2, 0}, {7, 1.2, 2}, {7.15, 1.2, 2}, {7.15, 1.2, 0}});
+  plan.add("wall", {{7, 2.2, 0}, {7.15, 2.2, 0}, {7.15, 2.2, 2}, {7, 2.2, 2}});
   plan.add("wall", {{7, 1.2, 2}, {7, 2.2, 2}, {7.15, 2.2, 2}, {7.15, 1.2, 2}});
   return plan;
 }

@@ -24,6 +24,7 @@ Json rooms_json(const RoomMap& rooms) {
     Json outline = Json::array();
     for (const Eigen::Vector3d& p : room.outline) outline.push_back(point_json(p));
     list.push_back({{"name", room.name},
+                    {"storey", room.storey + 1},
                     {"centre", point_json(room.centre)},
                     {"area_m2", rounded(room.area)},
                     {"width_m", rounded(room.width)},

@@ -119,7 +119,7 @@ void fields(Archive& archive, Labels& labels) {
 template <class Archive>
 void fields(Archive& archive, Room& room) {
   archive(room.name, room.centre, room.along, room.area, room.width, room.depth, room.height,
-          room.outline, room.scans);
+          room.outline, room.scans, room.storey);
 }
 
 template <class Archive>
@@ -130,7 +130,7 @@ void fields(Archive& archive, Opening& opening) {
 
 template <class Archive>
 void fields(Archive& archive, RoomMap& rooms) {
-  archive(rooms.rooms, rooms.openings, rooms.room_of_polygon);
+  archive(rooms.storeys, rooms.rooms, rooms.openings, rooms.room_of_polygon);
 }
 
 template <class Archive>

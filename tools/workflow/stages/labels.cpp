@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "labeling/occupancy.hpp"
+#include "labeling/storeys.hpp"
 #include "tools/workflow/results.hpp"
 #include "tools/workflow/stages/stages.hpp"
 
@@ -23,8 +25,9 @@ RoomMap rooms_of(const Labels& labels, const PolygonMap& map, StageContext& cont
     none.room_of_polygon.assign(map.polygons.size(), -1);
     return none;
   }
-  return find_rooms(context.results.cloud.get(), scan_origins(context.results.world.get()), map,
-                    context.project.settings.rooms);
+  return find_rooms_of_storeys(context.results.cloud.get(),
+                               scan_origins(context.results.world.get()), map,
+                               storey_floors(map, labels), context.project.settings.rooms);
 }
 
 std::string summary(const Labelled& labelled) {
