@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "labeling/blind_windows.hpp"
 #include "labeling/occupancy.hpp"
 #include "labeling/storeys.hpp"
 #include "tools/workflow/results.hpp"
@@ -54,7 +55,8 @@ void work(StageContext& context) {
   context.progress.report(0, steps);
   labelled.labels = label(map, context.project.settings.labels);
   context.progress.report(1, steps);
-  labelled.rooms = rooms_of(labelled.labels, map, context);
+  labelled.rooms =
+      with_blind_windows(map, labelled.labels, rooms_of(labelled.labels, map, context));
   labelled.labels = with_openings(map, std::move(labelled.labels), labelled.rooms.openings);
   context.progress.report(2, steps);
   write_result(context.result, labelled);
