@@ -96,28 +96,35 @@ std::string viewport(const Eigen::AlignedBox2d& extent) {
   return text;
 }
 
-std::string tables(const std::vector<DxfLayer>& layers, const Eigen::AlignedBox2d& extent) {
+std::string linetypes() {
   std::string text;
-  append(text, 0, "SECTION");
-  append(text, 2, "TABLES");
-  text += viewport(extent);
   begin_table(text, "LTYPE", linetype_table, 4);
   append_linetype(text, 0x14, "ByBlock", {});
   append_linetype(text, 0x15, "ByLayer", {});
   append_linetype(text, 0x16, "Continuous", {});
   append_linetype(text, 0x17, "DASHED", {0.08, -0.05});
   append(text, 0, "ENDTAB");
+  return text;
+}
+
+std::string layer_list(const std::vector<DxfLayer>& layers) {
+  std::string text;
   begin_table(text, "LAYER", layer_table, layers.size() + 1);
   unsigned handle = first_layer;
-  const auto add_layer = [&](const DxfLayer& layer) {
+  const auto add = [&](const DxfLayer& layer) {
     begin_record(text, "LAYER", "AcDbLayerTableRecord", handle++, layer_table, layer.name);
     append(text, 70, 0);
     append(text, 62, layer.colour);
     append(text, 6, "Continuous");
   };
-  add_layer({"0", 7});
-  for (const DxfLayer& layer : layers) add_layer(layer);
+  add({"0", 7});
+  for (const DxfLayer& layer : layers) add(layer);
   append(text, 0, "ENDTAB");
+  return text;
+}
+
+std::string text_styles() {
+  std::string text;
   begin_table(text, "STYLE", style_table, 1);
   begin_record(text, "STYLE", "AcDbTextStyleTableRecord", 0x11, style_table, "Standard");
   append(text, 70, 0);
@@ -129,6 +136,12 @@ std::string tables(const std::vector<DxfLayer>& layers, const Eigen::AlignedBox2
   append(text, 3, "txt");
   append(text, 4, "");
   append(text, 0, "ENDTAB");
+  return text;
+}
+
+/// Tables that must be there though nothing uses them.
+std::string unused_tables() {
+  std::string text;
   begin_table(text, "VIEW", view_table, 0);
   append(text, 0, "ENDTAB");
   begin_table(text, "UCS", ucs_table, 0);
@@ -143,12 +156,26 @@ std::string tables(const std::vector<DxfLayer>& layers, const Eigen::AlignedBox2
                "Standard");
   append(text, 70, 0);
   append(text, 0, "ENDTAB");
+  return text;
+}
+
+std::string block_records() {
+  std::string text;
   begin_table(text, "BLOCK_RECORD", block_record_table, 2);
   begin_record(text, "BLOCK_RECORD", "AcDbBlockTableRecord", model_space, block_record_table,
                "*Model_Space");
   begin_record(text, "BLOCK_RECORD", "AcDbBlockTableRecord", paper_space, block_record_table,
                "*Paper_Space");
   append(text, 0, "ENDTAB");
+  return text;
+}
+
+std::string tables(const std::vector<DxfLayer>& layers, const Eigen::AlignedBox2d& extent) {
+  std::string text;
+  append(text, 0, "SECTION");
+  append(text, 2, "TABLES");
+  text += viewport(extent) + linetypes() + layer_list(layers) + text_styles() + unused_tables() +
+          block_records();
   append(text, 0, "ENDSEC");
   return text;
 }
