@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "meshing/plane_geometry.hpp"
 #include "slam/core/error.hpp"
@@ -16,6 +17,7 @@ namespace {
 const double parallel_cosine = std::cos(radians(15));
 constexpr double max_front = 0.08;          // m of a reveal before the face of the wall
 constexpr double max_closed = 0.5;          // of a hole, by a surface behind it
+constexpr double max_jamb_distance = 4;     // m, of one window
 constexpr double min_closing_depth = 0.02;  // m
 
 /// A wall's own frame: u along it (its normal turned left), z up, depth behind its face.
@@ -121,12 +123,90 @@ bool is_known(const Eigen::Vector3d& position, const std::vector<Opening>& openi
   });
 }
 
-std::optional<Opening> window_in(const Ring& ring, const PolygonMap& map, const WallFrame& frame,
+/// A hole in a wall that is about a rectangle.
+std::optional<WallBox> rectangle_of(const Ring& ring, const PolygonMap& map, const WallFrame& frame,
+                                    double min_fill) {
+  const WallBox hole = box_of(ring, map, frame);
+  if (area_of(ring, map, frame) < min_fill * hole.width() * hole.height()) return std::nullopt;
+  return hole;
+}
+
+/// Share of a rectangle that is not wall.
+double open_share(const WallBox& box, const MapPolygon& wall, const PolygonMap& map,
+                  const WallFrame& frame) {
+  constexpr int steps = 5;
+  std::vector<Ring2d> rings;
+  const auto add = [&](const Ring& ring) {
+    rings.emplace_back();
+    for (const std::uint32_t v : ring)
+      rings.back().emplace_back(frame.u_of(map.vertices[v]), map.vertices[v].z());
+  };
+  add(wall.outer);
+  for (const Ring& hole : wall.holes) add(hole);
+  int open = 0;
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < steps; ++j) {
+      const Eigen::Vector2d place(box.left + (i + 0.5) / steps * box.width(),
+                                  box.low + (j + 0.5) / steps * box.height());
+      bool inside = false;
+      for (const Ring2d& ring : rings) inside ^= is_inside(ring, place);
+      open += !inside;
+    }
+  return open / static_cast<double>(steps * steps);
+}
+
+/// Rectangles between jambs that face each other, and below a lintel with a jamb at one end: the
+/// hole itself may have run into a shadow or over the end of the polygon.
+std::vector<WallBox> between_reveals(const MapPolygon& wall, const PolygonMap& map,
+                                     const WallFrame& frame, const BlindWindowParams& params) {
+  const WallBox reach = box_of(wall.outer, map, frame);
+  std::array<std::vector<WallBox>, 4> reveals;  // as edge_of numbers them
+  for (const MapPolygon& polygon : map.polygons) {
+    const int edge = edge_of(polygon.plane.normal, frame);
+    if (edge < 0) continue;
+    const WallBox box = box_of(polygon.outer, map, frame);
+    const double length = edge < 2 ? box.height() : box.width();
+    const double thickness = edge < 2 ? box.width() : box.height();
+    if (std::abs(box.near) > max_front || box.far < 2 * max_front || box.far > params.max_depth ||
+        thickness > params.edge_reach || length < params.min_size || box.right < reach.left ||
+        box.left > reach.right)
+      continue;
+    reveals[static_cast<std::size_t>(edge)].push_back(box);
+  }
+  std::vector<WallBox> result;
+  const auto add = [&](const WallBox& box) {
+    if (box.width() <= max_jamb_distance && box.height() >= params.min_size &&
+        open_share(box, wall, map, frame) > params.min_fill)
+      result.push_back(box);
+  };
+  const auto& [left, right, sills, lintels] = reveals;
+  for (const WallBox& from : left)
+    for (const WallBox& to : right) {
+      WallBox box = from;
+      box.left = (from.left + from.right) / 2;
+      box.right = (to.left + to.right) / 2;
+      box.low = std::min(from.low, to.low);
+      box.high = std::max(from.high, to.high);
+      if (shared(from.low, from.high, to.low, to.high) > max_closed * box.height()) add(box);
+    }
+  for (const WallBox& lintel : lintels)
+    for (const auto* jambs : {&left, &right})
+      for (const WallBox& jamb : *jambs) {
+        const double end = jambs == &left ? lintel.left : lintel.right;
+        if (std::abs(end - (jamb.left + jamb.right) / 2) > 2 * params.edge_reach ||
+            std::abs(lintel.low - jamb.high) > 2 * params.edge_reach)
+          continue;
+        WallBox box = lintel;
+        box.low = jamb.low;
+        add(box);
+      }
+  return result;
+}
+
+std::optional<Opening> window_in(WallBox hole, const PolygonMap& map, const WallFrame& frame,
                                  double floor, const BlindWindowParams& params) {
-  WallBox hole = box_of(ring, map, frame);
   if (hole.width() < params.min_size || hole.height() < params.min_size ||
-      hole.low - floor < params.min_sill ||
-      area_of(ring, map, frame) < params.min_fill * hole.width() * hole.height())
+      hole.low - floor < params.min_sill)
     return std::nullopt;
   const Reveals reveals = reveals_of(hole, map, frame, params);
   if (reveals.closed || reveals.count() < params.min_reveals) return std::nullopt;
@@ -164,7 +244,13 @@ RoomMap with_blind_windows(const PolygonMap& map, const Labels& labels, RoomMap 
     const Room& inside = rooms.rooms[static_cast<std::size_t>(room)];
     if (inside.outline.empty()) continue;
     const WallFrame frame(map.polygons[i].plane);
-    for (const Ring& hole : map.polygons[i].holes) {
+    std::vector<WallBox> candidates;
+    for (const Ring& hole : map.polygons[i].holes)
+      if (const auto box = rectangle_of(hole, map, frame, params.min_fill))
+        candidates.push_back(*box);
+    for (const WallBox& box : between_reveals(map.polygons[i], map, frame, params))
+      candidates.push_back(box);
+    for (const WallBox& hole : candidates) {
       auto window = window_in(hole, map, frame, inside.outline.front().z(), params);
       if (!window || is_known(window->position, rooms.openings)) continue;
       window->rooms = {static_cast<std::size_t>(room)};

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "labeling/keepout.hpp"
 #include "labeling/occupancy.hpp"
 #include "meshing/triangulation.hpp"
 #include "slam/core/error.hpp"
@@ -37,19 +38,24 @@ struct Exporter {
   std::function<void(const fs::path& file)> write;
 };
 
-/// A map for each storey; of one storey it is `occupancy.yaml`, of more `occupancy_1.yaml` (the
-/// lowest) and so on.
+/// A map for each storey, and its keep-out mask; of one storey they are `occupancy.yaml` and
+/// `keepout.yaml`, of more `occupancy_1.yaml` (the lowest) and so on.
 void write_occupancy(const fs::path& path, StageContext& context) {
   Results& results = context.results;
-  const std::vector<double> floors =
-      storey_floors(results.polygons.get(), results.labelled.get().labels);
+  const PolygonMap& map = results.polygons.get();
+  const Labels& labels = results.labelled.get().labels;
+  const OccupancyParams& params = context.project.settings.occupancy;
+  const std::vector<double> floors = storey_floors(map, labels);
   if (floors.empty()) throw Error(path.string() + ": there is no floor for a robot");
   const auto origins = scan_origins(results.world.get());
-  for (std::size_t i = 0; i < floors.size(); ++i)
-    write_occupancy_map(
-        floors.size() == 1 ? path : path.parent_path() / fmt::format("occupancy_{}.yaml", i + 1),
-        occupancy_grid(results.cloud.get(), origins, results.mesh.get(), floors[i],
-                       context.project.settings.occupancy));
+  for (std::size_t i = 0; i < floors.size(); ++i) {
+    const std::string ending = floors.size() == 1 ? ".yaml" : fmt::format("_{}.yaml", i + 1);
+    const OccupancyGrid storey =
+        occupancy_grid(results.cloud.get(), origins, results.mesh.get(), floors[i], params);
+    write_occupancy_map(path.parent_path() / ("occupancy" + ending), storey);
+    write_occupancy_map(path.parent_path() / ("keepout" + ending),
+                        keepout_mask(map, labels, storey, {.max_step = params.low}));
+  }
 }
 
 /// A plan for each storey that has a room; of one storey it is `path`, of more floorplan_1 (the
