@@ -18,15 +18,11 @@ struct WindowedRoom {
   PlanMaker plan;
   std::size_t wall = 0;
 
-  void add_jambs() {
-    plan.add("unknown", {{left, wall_y, sill},
-                         {left, wall_y, top},
-                         {left, wall_y + depth, top},
-                         {left, wall_y + depth, sill}});
-    plan.add("unknown", {{right, wall_y, sill},
-                         {right, wall_y + depth, sill},
-                         {right, wall_y + depth, top},
-                         {right, wall_y, top}});
+  void add_jambs(double low = sill) {
+    const Vector3d up(0, 0, top - low), in(0, depth, 0);
+    const Vector3d a(left, wall_y, low), b(right, wall_y, low);
+    plan.add("unknown", {a, a + in, a + in + up, a + up});
+    plan.add("unknown", {b, b + up, b + in + up, b + in});
   }
   void add_sill_and_lintel() {
     plan.add("unknown", {{left, wall_y, sill},
@@ -126,16 +122,8 @@ TEST(BlindWindows, NeedTwoRevealsASillAndNothingBehind) {
                              {right, wall_y + depth, top},
                              {left, wall_y + depth, top}});
   EXPECT_TRUE(niche.with_windows().openings.empty());
-  WindowedRoom low;
-  low.plan = room_with_hole(0.1).plan;
-  low.plan.add("unknown", {{left, wall_y, 0.1},
-                           {left, wall_y, top},
-                           {left, wall_y + depth, top},
-                           {left, wall_y + depth, 0.1}});
-  low.plan.add("unknown", {{right, wall_y, 0.1},
-                           {right, wall_y + depth, 0.1},
-                           {right, wall_y + depth, top},
-                           {right, wall_y, top}});
+  WindowedRoom low = room_with_hole(0.1);
+  low.add_jambs(0.1);
   EXPECT_TRUE(low.with_windows().openings.empty());
 }
 

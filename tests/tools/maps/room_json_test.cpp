@@ -38,9 +38,9 @@ RoomMap two_rooms() {
 TEST(RoomJson, SaysWhatARoomIsToTenthsOfMillimetres) {
   const Json rooms = rooms_json(two_rooms());
   ASSERT_EQ(rooms.size(), 2u);
-  EXPECT_EQ(rooms[0], Json::parse(R"({"name": "room 1", "centre": [1.5, 2.0, 1.25],
-      "area_m2": 12.0, "width_m": 3.0001, "depth_m": 4.0, "height_m": 2.5,
-      "depth_direction": [0.6, 0.8, 0.0],
+  EXPECT_EQ(rooms[0], Json::parse(R"({"name": "room 1", "storey": 1, "centre": [1.5, 2.0, 1.25],
+      "area_m2": 12.0, "perimeter_m": 14.0, "width_m": 3.0001, "depth_m": 4.0, "height_m": 2.5,
+      "depth_direction": [0.6, 0.8, 0.0], "neighbours": ["room 2"],
       "outline": [[0.0,0.0,0.0], [3.0,0.0,0.0], [3.0,4.0,0.0], [0.0,4.0,0.0]]})"));
   EXPECT_EQ(rooms[1]["name"], "room 2");
   EXPECT_EQ(rooms[1]["outline"], Json::array());
