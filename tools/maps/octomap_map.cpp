@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <octomap/OcTree.h>
-#include <ostream>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -16,6 +14,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
 #include "slam/io/atomic_file.hpp"
+#include "tools/maps/octree_file.hpp"
 #include "tools/maps/octree_rays.hpp"
 
 namespace planum {
@@ -26,7 +25,12 @@ constexpr std::size_t bricks_per_block = 64;
 constexpr double cells_each_way = 32768;       // of an octree with 16 levels, from 0
 constexpr double most_cells_of_a_ray = 99990;  // that OctoMap itself has room for
 
-using octomap::OcTree, octomap::OcTreeNode;
+// Log odds as OctoMap has them: of a hit, of a miss, and where they end.
+float log_odds(double probability) {
+  return static_cast<float>(std::log(probability / (1 - probability)));
+}
+const float hit = log_odds(0.7), miss = log_odds(0.4);
+const float least = log_odds(0.1192), most = log_odds(0.971);
 
 void check(const std::filesystem::path& path, const Cloud& cloud,
            std::span<const Eigen::Vector3d> origins, double cell) {
@@ -66,20 +70,12 @@ std::vector<std::vector<Eigen::Vector3f>> points_of_scans(const Cloud& cloud, st
   return result;
 }
 
-/// What all scans say of a brick's cells.
-struct BrickOdds {
-  std::uint64_t path;  ///< from the root of the tree
-  BrickSet known;
-  std::array<float, cells_per_brick> log_odds = {};
-};
-
-void add_seen(const OcTree& tree, const SeenBrick& seen, BrickOdds& odds) {
-  const float low = tree.getClampingThresMinLog(), high = tree.getClampingThresMaxLog();
-  const float hit = tree.getProbHitLog(), miss = tree.getProbMissLog();
-  seen.free.for_each(
-      [&](std::size_t cell) { odds.log_odds[cell] = std::max(odds.log_odds[cell] + miss, low); });
-  seen.occupied.for_each(
-      [&](std::size_t cell) { odds.log_odds[cell] = std::min(odds.log_odds[cell] + hit, high); });
+void add_seen(const SeenBrick& seen, BrickOdds& odds) {
+  const auto add = [&](std::size_t cell, float change) {
+    odds.log_odds[cell] = std::clamp(odds.log_odds[cell] + change, least, most);
+  };
+  seen.free.for_each([&](std::size_t cell) { add(cell, miss); });
+  seen.occupied.for_each([&](std::size_t cell) { add(cell, hit); });
   odds.known.add_all(seen.free);
   odds.known.add_all(seen.occupied);
 }
@@ -88,8 +84,6 @@ void add_seen(const OcTree& tree, const SeenBrick& seen, BrickOdds& odds) {
 /// another: odds are clamped, so that their order matters.
 class OddsOfScans {
  public:
-  explicit OddsOfScans(const OcTree& tree) : tree_(tree) {}
-
   void add(const std::vector<std::vector<SeenBrick>>& scans) {
     std::vector<Visit> visits;
     for (std::size_t scan = 0; scan < scans.size(); ++scan)
@@ -107,11 +101,18 @@ class OddsOfScans {
     parallel_for(brick.size(), bricks_per_block, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b)
         for (std::size_t i = first_visit[b]; i < first_visit[b + 1]; ++i)
-          add_seen(tree_, *visits[i].seen, bricks_[brick[b]]);
+          add_seen(*visits[i].seen, bricks_[brick[b]]);
     });
   }
 
-  std::vector<BrickOdds> taken() && { return std::move(bricks_); }
+  /// In the order of their paths.
+  std::vector<const BrickOdds*> sorted() const {
+    std::vector<const BrickOdds*> result;
+    for (const BrickOdds& brick : bricks_) result.push_back(&brick);
+    std::sort(result.begin(), result.end(),
+              [](const BrickOdds* a, const BrickOdds* b) { return a->path < b->path; });
+    return result;
+  }
 
  private:
   struct Visit {
@@ -122,74 +123,21 @@ class OddsOfScans {
 
   std::size_t place_of(std::uint64_t path) {
     const auto [found, is_new] = places_.try_emplace(path, bricks_.size());
-    if (is_new) bricks_.push_back({.path = path, .known = {}});
+    if (is_new) bricks_.push_back({.path = path, .known = {}, .log_odds = {}});
     return found->second;
   }
 
-  const OcTree& tree_;
   std::unordered_map<std::uint64_t, std::size_t> places_;
   std::vector<BrickOdds> bricks_;
 };
-
-/// An octree built from its bricks at once, pruned as one that grew cell by cell.
-class BuiltTree : public OcTree {
- public:
-  explicit BuiltTree(double cell) : OcTree(cell) {}
-
-  void build(const std::vector<BrickOdds>& bricks) {
-    std::vector<const BrickOdds*> sorted;
-    for (const BrickOdds& brick : bricks) sorted.push_back(&brick);
-    std::sort(sorted.begin(), sorted.end(),
-              [](const BrickOdds* a, const BrickOdds* b) { return a->path < b->path; });
-    root = new OcTreeNode();
-    ++tree_size;
-    size_changed = true;
-    add_bricks(root, sorted, bricks_levels);
-  }
-
- private:
-  void add_bricks(OcTreeNode* node, std::span<const BrickOdds* const> bricks, int levels) {
-    if (levels == 0) return add_cells(node, *bricks.front(), 0, cells_per_brick);
-    const int below = 3 * (levels - 1);
-    for (std::size_t begin = 0, end = 0; begin < bricks.size(); begin = end) {
-      const std::uint64_t branch = bricks[begin]->path >> below;
-      while (end < bricks.size() && bricks[end]->path >> below == branch) ++end;
-      add_bricks(createNodeChild(node, branch & 7), bricks.subspan(begin, end - begin), levels - 1);
-    }
-    if (!pruneNode(node)) node->updateOccupancyChildren();
-  }
-
-  /// `count` cells of a brick, of which at least one is known.
-  void add_cells(OcTreeNode* node, const BrickOdds& brick, std::size_t first, std::size_t count) {
-    if (is_uniform(brick, first, count)) return node->setLogOdds(brick.log_odds[first]);
-    const std::size_t step = count / 8;
-    for (unsigned child = 0; child < 8; ++child)
-      if (const std::size_t cell = first + child * step; brick.known.has_any(cell, step))
-        add_cells(createNodeChild(node, child), brick, cell, step);
-    node->updateOccupancyChildren();
-  }
-
-  static bool is_uniform(const BrickOdds& brick, std::size_t first, std::size_t count) {
-    for (std::size_t cell = first; cell < first + count; ++cell)
-      if (!brick.known.has(cell) || brick.log_odds[cell] != brick.log_odds[first]) return false;
-    return true;
-  }
-};
-
-/// The head of the library's files; the library itself prints while it writes.
-std::string head(const char* kind, const OcTree& tree) {
-  return fmt::format("# Octomap OcTree {}\n# written by planum\nid OcTree\nsize {}\nres {}\ndata\n",
-                     kind, tree.size(), tree.getResolution());
-}
 
 }  // namespace
 
 void write_octomap(const std::filesystem::path& path, const Cloud& cloud,
                    std::span<const Eigen::Vector3d> scan_origins, const OctomapParams& params) {
   check(path, cloud, scan_origins, params.cell);
-  BuiltTree tree(params.cell);
   const auto points = points_of_scans(cloud, scan_origins.size());
-  OddsOfScans odds(tree);
+  OddsOfScans odds;
   for (std::size_t first = 0; first < points.size(); first += scans_per_batch) {
     std::vector<std::vector<SeenBrick>> scans(std::min(scans_per_batch, points.size() - first));
     parallel_for(scans.size(), 1, [&](std::size_t i, std::size_t) {
@@ -197,20 +145,10 @@ void write_octomap(const std::filesystem::path& path, const Cloud& cloud,
     });
     odds.add(scans);
   }
-  tree.build(std::move(odds).taken());
-
-  std::filesystem::path full_path = path;
-  AtomicFile full(full_path.replace_extension(".ot"));
-  full.stream() << head("file", tree);
-  tree.writeData(full.stream());
-  full.commit();
-
-  tree.toMaxLikelihood();
-  tree.prune();
-  AtomicFile binary(path);
-  binary.stream() << head("binary file", tree);
-  tree.writeBinaryData(binary.stream());
-  binary.commit();
+  const std::vector<const BrickOdds*> bricks = odds.sorted();
+  std::filesystem::path full = path;
+  write_file_atomically(full.replace_extension(".ot"), octree_file(bricks, params.cell));
+  write_file_atomically(path, binary_octree_file(bricks, params.cell));
 }
 
 }  // namespace planum

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <octomap/octomap_types.h>
 #include <utility>
 
 namespace planum {
@@ -54,15 +53,12 @@ class BrickBox {
            PackedKey{key[2] - 8 * low_[2]} << 32;
   }
 
-  /// The brick of a cell, or of each of some; and which cell of the brick it is.
+  /// The brick of a cell, or of each of some, and which cell of it it is.
   template <class Keys>
-  Keys brick_of(const Keys& keys) const {
-    return (keys >> 3 & 0x1fff) + (keys >> 19 & 0x1fff) * size_[0] +
-           (keys >> 35) * (size_[0] * size_[1]);
-  }
-  template <class Keys>
-  static Keys cell_of(const Keys& keys) {
-    return (keys & 7) | (keys >> 13 & 0x38) | (keys >> 26 & 0x1c0);
+  void locate(const Keys& keys, Keys& bricks, Keys& cells) const {
+    bricks = (keys >> 3 & 0x1fff) + (keys >> 19 & 0x1fff) * size_[0] +
+             (keys >> 35) * (size_[0] * size_[1]);
+    cells = (keys & 7) | (keys >> 13 & 0x38) | (keys >> 26 & 0x1c0);
   }
 
   /// The reference holds until the next brick is made.
@@ -101,7 +97,7 @@ struct Ray {
   std::array<double, 3> between = {};  ///< m along it, from side to side
 };
 
-Ray ray_between(const octomap::point3d& from, const CellKey& from_key, const CellKey& end,
+Ray ray_between(const Eigen::Vector3f& from, const CellKey& from_key, const CellKey& end,
                 const BrickBox& box, double cell) {
   Ray ray;
   ray.cell = box.packed(from_key);
@@ -109,18 +105,19 @@ Ray ray_between(const octomap::point3d& from, const CellKey& from_key, const Cel
   const auto middle = [&](std::size_t axis) {
     return static_cast<float>(middle_of(end[axis], cell));
   };
-  octomap::point3d direction = octomap::point3d(middle(0), middle(1), middle(2)) - from;
-  const auto length = static_cast<float>(direction.norm());
-  direction /= length;
+  const Eigen::Vector3f way = Eigen::Vector3f(middle(0), middle(1), middle(2)) - from;
+  const float squared = way.x() * way.x() + way.y() * way.y() + way.z() * way.z();
+  const auto length = static_cast<float>(std::sqrt(static_cast<double>(squared)));
   ray.length = static_cast<double>(length);
-  for (unsigned axis = 0; axis < 3; ++axis) {
-    const float d = direction(axis);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float d = way[Eigen::Index(axis)] / length;
     ray.step[axis] = (d < 0 ? -1 : 1) * (PackedKey{1} << (16 * axis));
     ray.next[axis] = ray.between[axis] = std::numeric_limits<double>::max();
     if (d == 0) continue;
     const double side = middle_of(from_key[axis], cell) +
                         static_cast<double>(static_cast<float>((d > 0 ? 1 : -1) * cell * 0.5));
-    ray.next[axis] = (side - static_cast<double>(from(axis))) / static_cast<double>(d);
+    ray.next[axis] =
+        (side - static_cast<double>(from[Eigen::Index(axis)])) / static_cast<double>(d);
     ray.between[axis] = cell / std::abs(static_cast<double>(d));
   }
   return ray;
@@ -160,7 +157,8 @@ class Walkers {
   }
 
   void mark_free(BrickBox& box) const {
-    const Keys bricks = box.brick_of(cell_), cells = BrickBox::cell_of(cell_);
+    Keys bricks, cells;
+    box.locate(cell_, bricks, cells);
     for (std::size_t lane = 0; lane < count; ++lane)
       box.at(bricks[lane]).free.add(morton_place[static_cast<std::size_t>(cells[lane])]);
   }
@@ -196,9 +194,8 @@ class Walkers {
 /// All cells from `from` up to the ones before the ends are free.
 void mark_rays(const Eigen::Vector3f& from, const CellKey& from_key, std::span<const CellKey> ends,
                double cell, BrickBox& box) {
-  const octomap::point3d start(from.x(), from.y(), from.z());
   std::size_t begun = 0, walking = 0;
-  const auto next_ray = [&] { return ray_between(start, from_key, ends[begun++], box, cell); };
+  const auto next_ray = [&] { return ray_between(from, from_key, ends[begun++], box, cell); };
   Walkers walkers(box.packed(from_key));
   for (; walking < Walkers::count && begun < ends.size(); ++walking)
     walkers.begin(walking, next_ray());
@@ -236,9 +233,10 @@ std::vector<SeenBrick> seen_cells(std::span<const Eigen::Vector3f> points,
   BrickBox box(low, high);
   std::vector<CellKey> ends;
   for (const CellKey& key : keys) {
-    const PackedKey packed = box.packed(key);
-    BrickSet& occupied = box.at(box.brick_of(packed)).occupied;
-    const std::size_t place = morton_place[static_cast<std::size_t>(BrickBox::cell_of(packed))];
+    PackedKey brick = 0, cell_in_brick = 0;
+    box.locate(box.packed(key), brick, cell_in_brick);
+    BrickSet& occupied = box.at(brick).occupied;
+    const std::size_t place = morton_place[static_cast<std::size_t>(cell_in_brick)];
     if (occupied.has(place)) continue;
     occupied.add(place);
     if (key != from) ends.push_back(key);
