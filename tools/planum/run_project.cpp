@@ -53,8 +53,12 @@ std::string results_text(const Project& project) {
   const std::filesystem::path output = output_directory(project);
   const std::pair<const char*, const char*> files[] = {
       {"topview.png", "the plan: rooms, doors, the path before and after"},
-      {"map.obj, map.ply", "the polygon map as triangles, coloured by label"},
+      {"floorplan.svg, .dxf", "the plan to scale, for paper and CAD"},
+      {"map.glb", "the polygon map with textures, for viewers"},
+      {"map.obj, map.ply", "the same as triangles, by label"},
       {"polygons.json", "the polygon map with labels, rooms and openings, for programs"},
+      {"occupancy.yaml, keepout.yaml", "what is in a robot's way, for map_server"},
+      {"map.bt, navmesh.bin, world/", "for OctoMap, Detour, Gazebo"},
       {"cloud.ply, mesh.ply", "what it was made from"},
       {"trajectory.tum", "where the scans were taken"},
       {"report.json", "all figures"}};
@@ -62,7 +66,7 @@ std::string results_text(const Project& project) {
   for (const auto& [names, meaning] : files) {
     const std::string first = std::string(names).substr(0, std::string_view(names).find(','));
     if (std::filesystem::exists(output / first)) {
-      text += fmt::format("  {:<22}{}\n", names, meaning);
+      text += fmt::format("  {:<30}{}\n", names, meaning);
     }
   }
   return text;
