@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -21,8 +23,10 @@ namespace {
 using Points = std::vector<Eigen::Vector3f>;
 
 constexpr int directions = 4;
-constexpr std::size_t most_places = 6;  // that a model is looked at from, the nearest of its room
-constexpr double cut_off = 0.06;        // m above the floor: points there belong to it
+constexpr std::size_t most_places = 6;       // that a model is looked at from
+constexpr std::size_t most_pairs = 400;      // of ICP
+constexpr std::size_t most_looked_at = 800;  // points of a model
+constexpr double cut_off = 0.06;             // m above the floor: points there belong to it
 
 void check(std::span<const ObjectModel> models, const MatchParams& params) {
   const auto fail = [](const std::string& what) { throw Error("models: " + what); };
@@ -44,6 +48,15 @@ void check(std::span<const ObjectModel> models, const MatchParams& params) {
         !(model.max_scale.array() >= model.min_scale.array()).all())
       fail("'" + model.name + "' has scales that are not 0 < min_scale <= max_scale");
   }
+}
+
+void check(const Cloud& cloud, std::span<const Eigen::Vector3d> scan_origins) {
+  if (cloud.scan.size() != cloud.points.size())
+    throw Error("models: the cloud needs a scan index for each point");
+  for (const std::uint32_t scan : cloud.scan)
+    if (scan >= scan_origins.size())
+      throw Error(fmt::format("models: a point is of scan {}, but there are {} scans", scan,
+                              scan_origins.size()));
 }
 
 /// The middles of the points in each cell of an edge (m), in a frame.
@@ -80,17 +93,26 @@ struct Target {
   std::vector<Eigen::Vector3d> places;
 };
 
-Target target_of(const SceneObject& object, const Cloud& cloud, const RoomMap& rooms,
+/// The scans that have most of an object's points, the foremost first.
+std::vector<std::uint32_t> main_scans(const SceneObject& object, const Cloud& cloud) {
+  std::map<std::uint32_t, std::size_t> counts;
+  for (const std::uint32_t i : object.points) ++counts[cloud.scan[i]];
+  std::vector<std::pair<std::size_t, std::uint32_t>> scans;
+  for (const auto& [scan, count] : counts) scans.emplace_back(count, scan);
+  std::stable_sort(scans.begin(), scans.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::uint32_t> result;
+  for (const auto& [count, scan] : scans)
+    if (result.size() < most_places && count > scans[0].first / 20) result.push_back(scan);
+  return result;
+}
+
+Target target_of(const SceneObject& object, const Cloud& cloud,
                  std::span<const Eigen::Vector3d> scan_origins, double spacing) {
   const Pose box_from_world = object.box.world_from_box().inverse();
   std::vector<Eigen::Vector3d> places;
-  for (const std::size_t scan : rooms.rooms[object.room].scans)
-    if (scan < scan_origins.size()) places.push_back(box_from_world * scan_origins[scan]);
-  if (places.empty())
-    for (const Eigen::Vector3d& origin : scan_origins) places.push_back(box_from_world * origin);
-  std::stable_sort(places.begin(), places.end(),
-                   [](const auto& a, const auto& b) { return a.squaredNorm() < b.squaredNorm(); });
-  places.resize(std::min(places.size(), most_places));
+  for (const std::uint32_t scan : main_scans(object, cloud))
+    places.push_back(box_from_world * scan_origins[scan]);
   Points points = thinned(cloud, object.points, box_from_world, spacing);
   return {object.box, points, KdTree(points), std::move(places)};
 }
@@ -148,6 +170,15 @@ Pose aligned(const Points& points, const SurfaceSamples& model, const KdTree& tr
   return model_from_box;
 }
 
+/// At most about `most` of the items, evenly.
+template <class Item>
+std::vector<Item> some_of(const std::vector<Item>& items, std::size_t most) {
+  std::vector<Item> result;
+  for (std::size_t i = 0; i < items.size(); i += 1 + items.size() / most)
+    result.push_back(items[i]);
+  return result;
+}
+
 double share_near(const Points& points, const KdTree& tree, double distance) {
   const auto near = std::count_if(points.begin(), points.end(), [&](const Eigen::Vector3f& p) {
     return tree.nearest(p, static_cast<float>(distance)).has_value();
@@ -167,10 +198,10 @@ ModelMatch fitted(const Target& target, const ObjectModel& model, const Candidat
   const SurfaceSamples samples = surface_samples(mesh, params.spacing);
   const KdTree tree(samples.points);
   const Pose model_from_box =
-      aligned(target.points, samples, tree,
+      aligned(some_of(target.points, most_pairs), samples, tree,
               Pose(Eigen::AngleAxisd(-start.turn, Eigen::Vector3d::UnitZ())), params);
   Points in_model;
-  for (const Eigen::Vector3f& p : target.points)
+  for (const Eigen::Vector3f& p : some_of(target.points, most_looked_at))
     in_model.push_back((model_from_box * p.cast<double>()).cast<float>());
   std::vector<Eigen::Vector3d> places;
   for (const Eigen::Vector3d& place : target.places) places.push_back(model_from_box * place);
@@ -178,12 +209,13 @@ ModelMatch fitted(const Target& target, const ObjectModel& model, const Candidat
   ModelMatch match{model.name, model_from_box.inverse(), start.scale, 0, 0, {}};
   match.explained = share_near(in_model, tree, params.tolerance);
   if (match.explained < params.min_score) return match;
-  const std::vector<bool> visible = are_visible(samples, mesh, places);
+  const SurfaceSamples faces{some_of(samples.points, most_looked_at),
+                             some_of(samples.normals, most_looked_at)};
+  const std::vector<bool> visible = are_visible(faces, mesh, places);
   Points looked_at;
-  for (std::size_t i = 0; i < samples.points.size(); ++i)
-    if (visible[i] && samples.points[i].z() > cut_off)
-      looked_at.push_back(
-          (match.world_from_model * samples.points[i].cast<double>()).cast<float>());
+  for (std::size_t i = 0; i < faces.points.size(); ++i)
+    if (visible[i] && faces.points[i].z() > cut_off)
+      looked_at.push_back((match.world_from_model * faces.points[i].cast<double>()).cast<float>());
   match.seen = share_near(looked_at, target.tree, params.tolerance);
   match.surface = moved(mesh, match.world_from_model);
   return match;
@@ -210,16 +242,16 @@ std::optional<ModelMatch> best_match(const Target& target, std::span<const Objec
 }  // namespace
 
 std::vector<SceneObject> with_models(std::vector<SceneObject> objects, const Cloud& cloud,
-                                     const RoomMap& rooms,
                                      std::span<const Eigen::Vector3d> scan_origins,
                                      std::span<const ObjectModel> models,
                                      const MatchParams& params) {
   check(models, params);
+  check(cloud, scan_origins);
   parallel_for(objects.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (!objects[i].is_on_floor) continue;
-      objects[i].model = best_match(
-          target_of(objects[i], cloud, rooms, scan_origins, params.spacing), models, params);
+      objects[i].model =
+          best_match(target_of(objects[i], cloud, scan_origins, params.spacing), models, params);
     }
   });
   return objects;

@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 
-#include "labeling/rooms.hpp"
 #include "labeling/scene_object.hpp"
 #include "slam/core/cloud.hpp"
 #include "slam/core/triangle_mesh.hpp"
@@ -31,11 +30,10 @@ struct MatchParams {
 
 /// The objects with the models that suit them best, where one suits. Models stand upright on the
 /// floor: point-to-plane ICP finds place and direction, from the four directions of the box.
-/// Objects that hang have no model. `scan_origins` are in the order of Room::scans: what no scan
-/// of the room could see of a model is not missed. Throws Error for parameters out of range and
-/// for a model without surface.
+/// Objects that hang have no model. `scan_origins` are what `scan` of the cloud points to: what of
+/// a model could not be seen from the scans that saw the object is not missed. Throws Error for
+/// parameters out of range, for a cloud without scan indices and for a model without surface.
 std::vector<SceneObject> with_models(std::vector<SceneObject> objects, const Cloud& cloud,
-                                     const RoomMap& rooms,
                                      std::span<const Eigen::Vector3d> scan_origins,
                                      std::span<const ObjectModel> models,
                                      const MatchParams& params = {});

@@ -19,8 +19,8 @@ struct ObjectCells {
   std::vector<std::size_t> first;       ///< of each cell in `points`, and the end of the last
 };
 
-/// The box round cells: its direction is that of the smallest rectangle round their middles, and
-/// `max_stray` of them may be outside of each face.
+/// The box round cells: its direction is that of a rectangle round their middles, and `max_stray`
+/// of them may be outside of each face.
 OrientedBox box_round(const ObjectCells& cells, double max_stray);
 
 /// The same box with sides that are nearer to a parallel wall than `reach` (m) moved to it: points

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <span>
+
 #include "labeling/labels.hpp"
 #include "labeling/rooms.hpp"
+#include "labeling/scene_object.hpp"
 #include "meshing/polygon_map.hpp"
 
 namespace planum {
@@ -11,6 +14,7 @@ struct LabelledMap {
   const PolygonMap& map;
   const Labels& labels;
   const RoomMap& rooms;
+  std::span<const SceneObject> objects = {};
 };
 
 }  // namespace planum

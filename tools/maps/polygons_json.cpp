@@ -7,6 +7,7 @@
 
 #include "slam/core/error.hpp"
 #include "slam/io/atomic_file.hpp"
+#include "tools/maps/object_json.hpp"
 #include "tools/maps/room_json.hpp"
 
 namespace planum {
@@ -79,7 +80,12 @@ void write_polygons_json(const std::filesystem::path& path, const LabelledMap& m
   }
   append_inferred(text, map.map);
   text += "],\n\"rooms\":" + rooms_json(map.rooms).dump();
-  text += ",\n\"openings\":" + openings_json(map.rooms).dump() + "}\n";
+  text += ",\n\"openings\":" + openings_json(map.rooms).dump();
+  // Models are named after files, whose names may be of any encoding.
+  text += ",\n\"objects\":" +
+          objects_json(map.objects, map.rooms)
+              .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
+          "}\n";
   write_file_atomically(path, text);
 }
 

@@ -5,6 +5,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/pose.hpp"
 #include "slam/io/atomic_file.hpp"
+#include "tools/maps/object_json.hpp"
 #include "tools/maps/room_json.hpp"
 
 namespace planum {
@@ -136,6 +137,7 @@ void write_report_json(const std::filesystem::path& path, const RunReport& repor
   if (report.rooms) {
     json["rooms"] = rooms_json(*report.rooms);
     json["openings"] = openings_json(*report.rooms);
+    json["objects"] = objects_json(report.objects, *report.rooms);
   }
   // Scans are named after files, whose names may be of any encoding.
   write_file_atomically(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");

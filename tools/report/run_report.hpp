@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "labeling/labels.hpp"
 #include "labeling/rooms.hpp"
+#include "labeling/scene_object.hpp"
 #include "meshing/polygon_map.hpp"
 
 namespace planum {
@@ -106,6 +108,7 @@ struct RunReport {
   const PolygonMap* map = nullptr;  ///< with labels: the areas by label
   const Labels* labels = nullptr;
   const RoomMap* rooms = nullptr;
+  std::span<const SceneObject> objects = {};  ///< in `rooms`
 };
 
 /// Writes report.json (docs/formats-results.md).

@@ -8,6 +8,7 @@
 
 #include "labeling/labels.hpp"
 #include "labeling/rooms.hpp"
+#include "labeling/scene_object.hpp"
 #include "meshing/polygon_map.hpp"
 #include "slam/core/cloud.hpp"
 #include "slam/core/progress.hpp"
@@ -77,6 +78,7 @@ struct World {
 struct Labelled {
   Labels labels;
   RoomMap rooms;
+  std::vector<SceneObject> objects;
 };
 
 /// The results of all stages of one run.

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "labeling/labels.hpp"
+#include "labeling/objects.hpp"
 #include "labeling/occupancy.hpp"
 #include "labeling/rooms.hpp"
 #include "meshing/free_space.hpp"
@@ -53,6 +54,7 @@ struct MapSettings {
   bool octomap = true;     ///< map.bt and map.ot
   bool sdf = true;         ///< world/, for Gazebo
   bool navmesh = true;     ///< navmesh.bin, for Detour
+  bool objects = true;     ///< objects.obj, models in their places
 };
 
 /// Every value of a project file, in the units of the program (m, rad, s). Where a module has a
@@ -86,6 +88,8 @@ struct Settings {
   PolygonSettings polygons;
   ShadowParams shadows;
   LabelParams labels;
+  ObjectParams objects;
+  std::string models;  ///< a directory of models of objects, empty: the built-in ones
   RoomParams rooms;
   MapSettings maps;
   OccupancyParams occupancy;

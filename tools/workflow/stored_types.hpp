@@ -134,8 +134,28 @@ void fields(Archive& archive, RoomMap& rooms) {
 }
 
 template <class Archive>
+void fields(Archive& archive, OrientedBox& box) {
+  archive(box.centre, box.along, box.size);
+}
+
+template <class Archive>
+void fields(Archive& archive, ModelMatch& match) {
+  archive(match.name, match.world_from_model, match.scale, match.explained, match.seen,
+          match.surface);
+}
+
+template <class Archive>
+void fields(Archive& archive, SceneObject& object) {
+  bool has_model = object.model.has_value();
+  archive(object.box, object.room, object.is_on_floor, object.points, object.polygons, has_model);
+  if (!has_model) return;
+  if (!object.model) object.model.emplace();
+  archive(*object.model);
+}
+
+template <class Archive>
 void fields(Archive& archive, Labelled& labelled) {
-  archive(labelled.labels, labelled.rooms);
+  archive(labelled.labels, labelled.rooms, labelled.objects);
 }
 
 }  // namespace planum

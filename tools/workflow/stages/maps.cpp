@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <set>
@@ -18,6 +19,7 @@
 #include "tools/maps/map_glb.hpp"
 #include "tools/maps/map_mesh.hpp"
 #include "tools/maps/navmesh.hpp"
+#include "tools/maps/objects_obj.hpp"
 #include "tools/maps/occupancy_map.hpp"
 #include "tools/maps/octomap_map.hpp"
 #include "tools/maps/polygons_json.hpp"
@@ -84,7 +86,7 @@ void work(StageContext& context) {
   const MapSettings& wanted = settings.maps;
   const PolygonMap& map = results.polygons.get();
   const Labelled& labelled = results.labelled.get();
-  const LabelledMap labelled_map{map, labelled.labels, labelled.rooms};
+  const LabelledMap labelled_map{map, labelled.labels, labelled.rooms, labelled.objects};
   const TriangulatedMap mesh = triangulated(map);
   const std::vector<TextureFrame> frames =
       wanted.textures ? texture_frames(map, labelled.labels) : std::vector<TextureFrame>();
@@ -125,6 +127,11 @@ void work(StageContext& context) {
          params.robot_climb = settings.occupancy.low;
          write_navmesh(file, mesh, labelled_map, params);
        }},
+      {"objects.obj",
+       wanted.objects &&
+           std::any_of(labelled.objects.begin(), labelled.objects.end(),
+                       [](const SceneObject& object) { return object.model.has_value(); }),
+       [&](const fs::path& file) { write_objects_obj(file, labelled.objects); }},
       {"world/world.sdf", wanted.sdf,
        [&](const fs::path& file) { write_sdf_world(file, mesh, labelled_map); }},
   };
@@ -145,7 +152,7 @@ void work(StageContext& context) {
 
 Stage maps_stage() {
   return {.name = "maps",
-          .version = 6,
+          .version = 7,
           .unit = "steps",
           .needs = {"cloud", "mesh", "polygons", "labels"},
           .parameters = {"maps"},

@@ -89,6 +89,7 @@ void work(StageContext& context) {
   report.map = &results.polygons.get();
   report.labels = &results.labelled.get().labels;
   report.rooms = &results.labelled.get().rooms;
+  report.objects = results.labelled.get().objects;
   context.record.summary = "report.json, topview.png";
   evaluate(context, report);
   draw(context);
@@ -99,7 +100,7 @@ void work(StageContext& context) {
 
 Stage report_stage() {
   return {.name = "report",
-          .version = 2,
+          .version = 3,
           .unit = "steps",
           .needs = {"import", "register", "relax", "cloud", "mesh", "polygons", "labels"},
           .parameters = {"evaluation"},
