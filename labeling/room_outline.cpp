@@ -146,7 +146,8 @@ RoomOutline region_outline(const FloorGrid& grid, const RoomRegions& regions, st
   border.drop([&](const BorderRun& before, const BorderRun& run, const BorderRun& after) {
     return completion.may_go(before, run, after);
   });
-  outline.outer = border.ring();
+  constexpr double max_slit = 0.12;  // m; no niche is that narrow
+  outline.outer = without_slits(border.ring(), max_slit);
   outline.area = ring_area(outline.outer);
   // A ring that went wrong is no measure; the cells always are.
   if (outline.area < 0.8 * cell_area || outline.area > 2.2 * cell_area) {
