@@ -72,7 +72,7 @@ OrientedBox box_round(const ObjectCells& cells, double max_stray) {
       sum += cells.points[k].head<2>();
     middles.push_back(sum / static_cast<double>(cells.first[i + 1] - cells.first[i]));
   }
-  const double direction = direction_of_rectangle(middles);
+  const double direction = direction_of_rectangle(middles, max_stray);
   const Eigen::Vector3d x(std::cos(direction), std::sin(direction), 0), y(-x.y(), x.x(), 0);
   const auto [x0, x1] = extent(cells, x, max_stray);
   const auto [y0, y1] = extent(cells, y, max_stray);

@@ -31,11 +31,11 @@ struct OrientedBox {
 /// efficient algorithm for convex hulls in two dimensions, 1979).
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points);
 
-/// rad, the direction of a side of the rectangle round the points: one lies along an edge of the
-/// hull, as that of the least area does (Freeman & Shapira, CACM 18(7), 1975), and of those hardly
-/// larger it is the one whose sides are nearest to the points. Two sides of a block, which are all
-/// that is seen of it from one place, have many rectangles of one area. 0 for fewer than two
-/// places.
-double direction_of_rectangle(const std::vector<Eigen::Vector2d>& points);
+/// rad, the direction of a side of a rectangle round points, of which a share `max_stray` may be
+/// outside of each side. One side of the smallest lies along an edge of the hull (Freeman &
+/// Shapira, CACM 18(7), 1975); of those hardly larger it is the one whose sides are nearest to the
+/// points, turned a little until they are nearest of all: two sides of a block, which are all that
+/// is seen of it from one place, have many rectangles of one area. 0 for fewer than two places.
+double direction_of_rectangle(const std::vector<Eigen::Vector2d>& points, double max_stray = 0);
 
 }  // namespace planum
