@@ -68,20 +68,16 @@ void check(const std::filesystem::path& path, const LabelledMap& map) {
     throw Error(fmt::format("{}: {} polygons with {} labels, {} of them with or without a room",
                             path.string(), polygons, map.labels.polygons.size(),
                             map.rooms.room_of_polygon.size()));
-  for (std::size_t i = 0; i < polygons; ++i) {
-    const MapPolygon& polygon = map.map.polygons[i];
-    double farthest = 0;
-    const auto measure = [&](const Ring& ring) {
-      for (const std::uint32_t v : ring)
-        farthest =
-            std::max(farthest, std::abs(polygon.plane.signed_distance(map.map.vertices.at(v))));
-    };
-    measure(polygon.outer);
-    for (const Ring& hole : polygon.holes) measure(hole);
-    if (!(farthest <= max_distance))
-      throw Error(fmt::format("{}: polygon {} is not plane: a vertex is {:.3g} m off (limit {} m)",
-                              path.string(), i, farthest, max_distance));
-  }
+}
+
+/// Whether a validator would take it for a surface.
+bool is_plane(const PolygonMap& map, const MapPolygon& polygon) {
+  const auto lies_in = [&](const Ring& ring) {
+    return std::all_of(ring.begin(), ring.end(), [&](std::uint32_t v) {
+      return std::abs(polygon.plane.signed_distance(map.vertices.at(v))) <= max_distance;
+    });
+  };
+  return lies_in(polygon.outer) && std::all_of(polygon.holes.begin(), polygon.holes.end(), lies_in);
 }
 
 /// Groups of polygons of a kind that hang together at vertices and are of the same room.
@@ -147,10 +143,14 @@ class CityWriter {
   explicit CityWriter(const LabelledMap& map)
       : map_(map),
         vertices_(lowest(map.map.vertices)),
-        surfaces_(map.rooms.rooms.size() + 1, CitySurfaces(vertices_)) {}
+        surfaces_(map.rooms.rooms.size() + 1, CitySurfaces(vertices_)) {
+    for (std::size_t i = 0; i < map.map.polygons.size(); ++i)
+      if (!is_plane(map.map, map.map.polygons[i])) left_out_.push_back(i);
+  }
 
   Json city_json() {
     add_object("building", "Building", "", {{"storeys", map_.rooms.storeys.size()}});
+    if (!left_out_.empty()) objects_["building"]["attributes"]["left_out"] = left_out_;
     add_storeys();
     add_polygons();
     add_room_floors();
@@ -212,7 +212,7 @@ class CityWriter {
   void add_polygons() {
     const auto add = [&](std::size_t polygon, const MapPolygon& shape, bool is_inferred) {
       const Label label = map_.labels.polygons.at(polygon).label;
-      if (!is_furniture(label) && label != Label::stair)
+      if (!is_furniture(label) && label != Label::stair && is_plane(map_.map, shape))
         surfaces_of(map_.rooms.room_of_polygon[polygon])
             .add(map_.map.vertices, shape, semantics_of(polygon, is_inferred));
     };
@@ -269,7 +269,9 @@ class CityWriter {
       const std::int32_t room = map_.rooms.room_of_polygon[piece.front()];
       const std::string id = fmt::format("{}-{}", kind, ++count);
       CitySurfaces surfaces(vertices_);
-      for (const std::size_t i : piece) surfaces.add(map_.map.vertices, map_.map.polygons[i]);
+      for (const std::size_t i : piece)
+        if (is_plane(map_.map, map_.map.polygons[i]))
+          surfaces.add(map_.map.vertices, map_.map.polygons[i]);
       add_object(id, type, room < 0 ? "building" : room_id(static_cast<std::size_t>(room)),
                  {{"function", kind}, {"polygons", piece}});
       objects_[id]["geometry"] = surfaces.geometry_json();
@@ -279,6 +281,7 @@ class CityWriter {
   const LabelledMap& map_;
   CityVertices vertices_;
   std::vector<CitySurfaces> surfaces_;  ///< of each room, then of the building
+  std::vector<std::size_t> left_out_;   ///< polygons that are not plane
   Json objects_ = Json::object();
 };
 
