@@ -6,6 +6,7 @@
 #include "slam/core/error.hpp"
 #include "slam/io/obj.hpp"
 #include "tests/slam/io/io_test_support.hpp"
+#include "tests/support/shared_data.hpp"
 #include "tools/maps/object_json.hpp"
 
 namespace planum {

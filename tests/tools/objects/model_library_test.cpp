@@ -6,7 +6,7 @@
 
 #include "labeling/model_surface.hpp"
 #include "slam/core/error.hpp"
-#include "tests/slam/io/io_test_support.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace planum {
 namespace {
