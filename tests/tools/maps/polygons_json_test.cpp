@@ -61,7 +61,7 @@ Vector3d area_vector(const Json& file, const Ring& ring) {
 /// What docs/formats-results.md promises for every file; tolerance in metres.
 void expect_laws(const Json& file, double tolerance) {
   EXPECT_EQ(keys(file), (std::set<std::string>{"version", "vertices", "polygons", "inferred",
-                                               "rooms", "openings"}));
+                                               "rooms", "openings", "objects"}));
   EXPECT_EQ(file["version"], 1);
   std::set<std::uint32_t> used;
   for (std::size_t id = 0; id < file["polygons"].size(); ++id) {
@@ -186,7 +186,7 @@ TEST(PolygonsJson, OfNothingIsAFileToo) {
   const SmallMap none;
   const Json file = written(none.labelled());
   expect_laws(file, 0);
-  for (const char* list : {"vertices", "polygons", "rooms", "openings"})
+  for (const char* list : {"vertices", "polygons", "rooms", "openings", "objects"})
     EXPECT_EQ(file[list], Json::array()) << list;
 }
 
