@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 #include <optional>
 
 #include "labeling/cell_lists.hpp"
@@ -95,13 +96,16 @@ struct FaceFinder {
   }
 };
 
-/// The samples of all blocks, sorted by face.
-std::vector<FaceSample> joined(const std::vector<std::vector<FaceSample>>& of_block) {
-  std::vector<FaceSample> result;
+/// The samples of all blocks, sorted by face, else in their order.
+std::vector<FaceSample> joined(const std::vector<std::vector<FaceSample>>& of_block,
+                               std::size_t faces) {
+  std::vector<std::size_t> next(faces + 1, 0);
   for (const std::vector<FaceSample>& block : of_block)
-    result.insert(result.end(), block.begin(), block.end());
-  std::stable_sort(result.begin(), result.end(),
-                   [](const FaceSample& a, const FaceSample& b) { return a.face < b.face; });
+    for (const FaceSample& sample : block) ++next[sample.face + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<FaceSample> result(next.back());
+  for (const std::vector<FaceSample>& block : of_block)
+    for (const FaceSample& sample : block) result[next[sample.face]++] = sample;
   return result;
 }
 
@@ -144,7 +148,7 @@ FaceSamples sample_faces(const Cloud& plan, std::span<const Eigen::Vector3d> ori
       finder.find_hits(point, hits[block]);
     }
   });
-  return {joined(crossings), joined(hits)};
+  return {joined(crossings, faces.size()), joined(hits, faces.size())};
 }
 
 std::span<const FaceSample> samples_of_face(const std::vector<FaceSample>& samples,

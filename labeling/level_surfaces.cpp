@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numeric>
 
 #include "labeling/grid_morphology.hpp"
+#include "slam/core/parallel.hpp"
 
 namespace planum {
 namespace {
@@ -12,6 +14,7 @@ namespace {
 constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
 constexpr float split_gap = 0.08f;     // m between two surfaces in one column
 constexpr double nearest_reach = 3.0;  // m
+constexpr std::size_t cells_per_block = 1 << 12;
 
 struct Sample {
   std::uint32_t cell;
@@ -20,6 +23,21 @@ struct Sample {
     return cell != other.cell ? cell < other.cell : up > other.up;
   }
 };
+
+/// Sorted: by counting into cells, then within each, which hold few.
+std::vector<Sample> by_cell(const std::vector<Sample>& samples, std::size_t cells) {
+  std::vector<std::uint32_t> begin(cells + 1, 0);
+  for (const Sample& sample : samples) ++begin[sample.cell + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<Sample> sorted(samples.size());
+  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+  for (const Sample& sample : samples) sorted[next[sample.cell]++] = sample;
+  parallel_for(cells, cells_per_block, [&](std::size_t first, std::size_t last) {
+    for (std::size_t cell = first; cell < last; ++cell)
+      std::sort(sorted.begin() + begin[cell], sorted.begin() + begin[cell + 1]);
+  });
+  return sorted;
+}
 
 /// Points of the wanted side, per cell, topmost first; floors are turned upside down.
 std::vector<Sample> samples_of(const Cloud& plan, const FloorGrid& grid, LevelSide side,
@@ -36,8 +54,7 @@ std::vector<Sample> samples_of(const Cloud& plan, const FloorGrid& grid, LevelSi
     if (floor && double{p.z() - floor->nearest[c]} < min_clearance) continue;
     samples.push_back({static_cast<std::uint32_t>(cell), sign * p.z()});
   }
-  std::sort(samples.begin(), samples.end());
-  return samples;
+  return by_cell(samples, grid.size());
 }
 
 /// The topmost surface of one column: the first run without a gap that holds two points, else the
