@@ -29,9 +29,10 @@ struct LabelParams {
   double min_beam_length = 1.0;  ///< m, of what hangs above headroom and is part of a wall
 
   // Stairs.
-  double min_rise = 0.10, max_rise = 0.24;    ///< m, from step to step
-  double min_going = 0.15, max_going = 0.60;  ///< m, depth of a step
-  double min_step_width = 0.5;                ///< m
+  double min_rise = 0.10, max_rise = 0.24;                              ///< m, from step to step
+  double min_going = 0.15, max_going = 0.60;                            ///< m, depth of a step
+  double min_step_width = 0.5;                                          ///< m
+  double min_stair_slope = radians(18), max_stair_slope = radians(45);  ///< of a whole flight
 
   // Doors and windows that do not open a hole in the cloud.
   double min_leaf_width = 0.55, max_leaf_width = 2.2;   ///< m, of one door or a pair of doors

@@ -41,6 +41,8 @@ void check(const LabelParams& params) {
       {"min_going", params.min_going},
       {"max_going", params.max_going},
       {"min_step_width", params.min_step_width},
+      {"min_stair_slope", params.min_stair_slope},
+      {"max_stair_slope", params.max_stair_slope},
       {"min_leaf_width", params.min_leaf_width},
       {"max_leaf_width", params.max_leaf_width},
       {"min_leaf_height", params.min_leaf_height},
@@ -112,6 +114,7 @@ Labels label(const PolygonMap& map, const LabelParams& params) {
   label_wall_ends(scene, params, polygons);
   label_soffits(scene, params, polygons);
   label_stairs(scene, params, polygons);
+  label_flights(scene, params, polygons);
   label_leaves(scene, params, polygons);
   label_furniture_tops(scene, params, polygons);
   label_furniture_sides(scene, params, polygons);

@@ -154,4 +154,25 @@ void label_stairs(const LabelScene& scene, const LabelParams& params,
   StairSearch(scene, params, labels).run();
 }
 
+void label_flights(const LabelScene& scene, const LabelParams& params,
+                   std::vector<PolygonLabel>& labels) {
+  constexpr double confidence = 0.5, max_below = 3;  // m from a flight down to its floor
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const LevelPolygon& it = scene.polygons[i];
+    const double slope = std::acos(std::clamp(it.plane.normal.z(), -1.0, 1.0));
+    if (it.attitude != Attitude::slanted || slope < params.min_stair_slope ||
+        slope > params.max_stair_slope || it.length < params.min_step_width ||
+        it.area < params.min_level_area || it.high.z() - it.low.z() < 2 * params.min_rise)
+      continue;
+    // Downhill, before its lower edge.
+    const Eigen::Vector2d down = it.plane.normal.head<2>().normalized();
+    const Eigen::Vector2d middle = (it.low + it.high).head<2>() / 2;
+    double edge = 0;
+    for (const Eigen::Vector2d& p : it.plan.front()) edge = std::max(edge, down.dot(p - middle));
+    const Eigen::Vector2d before = middle + (edge + params.neighbourhood / 2) * down;
+    const auto floor = height_of_floor_below(scene, labels, before, it.low.z() + params.max_rise);
+    if (floor && it.low.z() - *floor < max_below) labels[i] = {Label::stair, confidence};
+  }
+}
+
 }  // namespace planum

@@ -14,4 +14,10 @@ namespace planum {
 void label_stairs(const LabelScene& scene, const LabelParams& params,
                   std::vector<PolygonLabel>& labels);
 
+/// Flights whose steps ran together into one slanted surface, because few points were on each: as
+/// steep as stairs are, with a floor below at their foot. It may be a ramp: confidence 0.5. Needs
+/// the labels of floors.
+void label_flights(const LabelScene& scene, const LabelParams& params,
+                   std::vector<PolygonLabel>& labels);
+
 }  // namespace planum

@@ -166,6 +166,15 @@ TEST(Labels, KnowStairs) {
     }
 }
 
+TEST(Labels, TakeAFlightWithoutStepsForStairs) {
+  PlanMaker plan;
+  plan.add("floor", {{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}});
+  plan.add("stair", {{0, 3, 0}, {4, 3, 0}, {4, 6, 1.7}, {0, 6, 1.7}});
+  plan.add("wall", {{0, 0, 0}, {0, 6, 0}, {0, 6, 4}, {0, 0, 4}});
+  plan.add("unknown", {{5, 3, 2}, {9, 3, 2}, {9, 6, 4}, {5, 6, 4}});  // no floor at its foot
+  expect_labels(plan, label(plan.map));
+}
+
 TEST(Labels, TakeNoShelvesForStairs) {
   PlanMaker plan;
   plan.add_room({0, 0, 0}, {7, 6, 3});
@@ -265,7 +274,7 @@ TEST(Labels, OfOpeningsNeedOneForEachPolygon) {
 
 TEST(Labels, LeaveRampsAndRoofsAlone) {
   PlanMaker plan = furnished_room();
-  plan.add("unknown", {{1, 3, 0}, {2, 3, 1}, {2, 4, 1}, {1, 4, 0}});
+  plan.add("unknown", {{1, 3, 0}, {1.5, 3, 1}, {1.5, 4, 1}, {1, 4, 0}});
   expect_labels(plan, label(plan.map));
 }
 

@@ -90,7 +90,7 @@ void work(StageContext& context) {
 
 Stage labels_stage() {
   return {.name = "labels",
-          .version = 3,
+          .version = 4,
           .unit = "steps",
           .needs = {"cloud", "polygons"},
           .parameters = {"labels", "rooms"},
