@@ -169,9 +169,12 @@ void label_flights(const LabelScene& scene, const LabelParams& params,
     const Eigen::Vector2d middle = (it.low + it.high).head<2>() / 2;
     double edge = 0;
     for (const Eigen::Vector2d& p : it.plan.front()) edge = std::max(edge, down.dot(p - middle));
-    const Eigen::Vector2d before = middle + (edge + params.neighbourhood / 2) * down;
-    const auto floor = height_of_floor_below(scene, labels, before, it.low.z() + params.max_rise);
-    if (floor && it.low.z() - *floor < max_below) labels[i] = {Label::stair, confidence};
+    for (const double away :
+         {0.25, 0.5, 1.0, 1.5}) {  // its lowest steps may be polygons of their own
+      const Eigen::Vector2d before = middle + (edge + away * params.neighbourhood) * down;
+      const auto floor = height_of_floor_below(scene, labels, before, it.low.z() + params.max_rise);
+      if (floor && it.low.z() - *floor < max_below) labels[i] = {Label::stair, confidence};
+    }
   }
 }
 
