@@ -157,7 +157,24 @@ void label_stairs(const LabelScene& scene, const LabelParams& params,
 void label_flights(const LabelScene& scene, const LabelParams& params,
                    std::vector<PolygonLabel>& labels) {
   constexpr double confidence = 0.5, max_below = 3;  // m from a flight down to its floor
-  for (std::size_t i = 0; i < labels.size(); ++i) {
+  std::vector<std::size_t> upwards(labels.size());
+  std::iota(upwards.begin(), upwards.end(), std::size_t{0});
+  std::stable_sort(upwards.begin(), upwards.end(), [&](std::size_t a, std::size_t b) {
+    return scene.polygons[a].low.z() < scene.polygons[b].low.z();
+  });
+  // A lower flight is as good as a floor.
+  const auto is_foot = [&](const Eigen::Vector2d& place, double height) {
+    for (std::size_t j = 0; j < labels.size(); ++j) {
+      const LevelPolygon& foot = scene.polygons[j];
+      if ((labels[j].label != Label::floor && labels[j].label != Label::stair) ||
+          foot.attitude == Attitude::upright || !foot.covers(place))
+        continue;
+      const double below = height - foot.height_at(place);
+      if (below > -params.max_rise && below < max_below) return true;
+    }
+    return false;
+  };
+  for (const std::size_t i : upwards) {
     const LevelPolygon& it = scene.polygons[i];
     const double slope = std::acos(std::clamp(it.plane.normal.z(), -1.0, 1.0));
     if (it.attitude != Attitude::slanted || slope < params.min_stair_slope ||
@@ -172,8 +189,7 @@ void label_flights(const LabelScene& scene, const LabelParams& params,
     for (const double away :
          {0.25, 0.5, 1.0, 1.5}) {  // its lowest steps may be polygons of their own
       const Eigen::Vector2d before = middle + (edge + away * params.neighbourhood) * down;
-      const auto floor = height_of_floor_below(scene, labels, before, it.low.z() + params.max_rise);
-      if (floor && it.low.z() - *floor < max_below) labels[i] = {Label::stair, confidence};
+      if (is_foot(before, it.low.z())) labels[i] = {Label::stair, confidence};
     }
   }
 }
