@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "labeling/plan_ring.hpp"
 #include "meshing/plane_geometry.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/pose.hpp"
@@ -148,9 +149,7 @@ double open_share(const WallBox& box, const MapPolygon& wall, const PolygonMap& 
     for (int j = 0; j < steps; ++j) {
       const Eigen::Vector2d place(box.left + (i + 0.5) / steps * box.width(),
                                   box.low + (j + 0.5) / steps * box.height());
-      bool inside = false;
-      for (const Ring2d& ring : rings) inside ^= is_inside(ring, place);
-      open += !inside;
+      open += !rings_contain(rings, place);
     }
   return open / static_cast<double>(steps * steps);
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "labeling/plan_ring.hpp"
 #include "meshing/plane_geometry.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/pose.hpp"
@@ -35,10 +36,8 @@ void for_each_covered_cell(const MapPolygon& polygon, const PolygonMap& map, con
     for (int column = std::max(0, grid.column_of(low.x()));
          column <= std::min(grid.columns - 1, grid.column_of(high.x())); ++column) {
       const std::size_t cell = grid.index(column, row);
-      bool inside = false;
-      for (const Ring2d& ring : rings) inside ^= is_inside(ring, grid.centre(cell));
-      if (!inside) continue;
       const Eigen::Vector2d middle = grid.centre(cell);
+      if (!rings_contain(rings, middle)) continue;
       const Eigen::Vector3d place = world_from_plan * Eigen::Vector3d(middle.x(), middle.y(), 0);
       const Plane& plane = polygon.plane;
       visit(cell, (plane.offset - plane.normal.head<2>().dot(place.head<2>())) / plane.normal.z());

@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "labeling/plan_ring.hpp"
+
 namespace planum {
 namespace {
 
@@ -68,9 +70,7 @@ double side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vec
 
 bool LevelPolygon::covers(const Eigen::Vector2d& p) const {
   if (p.x() < low.x() || p.y() < low.y() || p.x() > high.x() || p.y() > high.y()) return false;
-  bool inside = false;
-  for (const Ring2d& ring : plan) inside ^= is_inside(ring, p);
-  return inside;
+  return rings_contain(plan, p);
 }
 
 double LevelPolygon::height_at(const Eigen::Vector2d& p) const {

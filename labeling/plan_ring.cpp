@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meshing/plane_geometry.hpp"
+
 namespace planum {
 
 double ring_area(const std::vector<Eigen::Vector2d>& ring) {
@@ -24,6 +26,13 @@ bool ring_contains(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector
         p.x() < a.x() + (p.y() - a.y()) * (b.x() - a.x()) / (b.y() - a.y()))
       inside = !inside;
   }
+  return inside;
+}
+
+bool rings_contain(const std::vector<std::vector<Eigen::Vector2d>>& rings,
+                   const Eigen::Vector2d& p) {
+  bool inside = false;
+  for (const Ring2d& ring : rings) inside ^= is_inside(ring, p);
   return inside;
 }
 

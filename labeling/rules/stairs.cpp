@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "meshing/plane_geometry.hpp"
+
 namespace planum {
 namespace {
 
@@ -15,18 +17,13 @@ constexpr int min_rises = 2;
 constexpr double max_rises = 2;  // of a riser: a podium may be as high as two steps
 constexpr double edge_confidence = 0.6;
 
-double distance_to_segment(const Eigen::Vector2d& p, const PlanSegment& s) {
-  const Eigen::Vector2d way = s.b - s.a;
-  const double length = way.squaredNorm();
-  const double t = length > 0 ? std::clamp((p - s.a).dot(way) / length, 0.0, 1.0) : 0.0;
-  return (s.a + t * way - p).norm();
-}
-
 double distance_to_outline(const Eigen::Vector2d& p, const Ring2d& ring) {
+  const auto lifted = [](const Eigen::Vector2d& q) { return Eigen::Vector3d(q.x(), q.y(), 0); };
   double nearest = HUGE_VAL;
   for (std::size_t i = 0; i < ring.size(); ++i)
-    nearest = std::min(nearest, distance_to_segment(p, {ring[i], ring[(i + 1) % ring.size()]}));
-  return nearest;
+    nearest = std::min(nearest, squared_distance_to_segment(lifted(p), lifted(ring[i]),
+                                                            lifted(ring[(i + 1) % ring.size()])));
+  return std::sqrt(nearest);
 }
 
 /// Between two outlines seen from above; 0 where one has a corner in the other.

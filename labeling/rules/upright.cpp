@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "labeling/plan_ring.hpp"
 #include "slam/core/pose.hpp"
 
 namespace planum {
@@ -44,14 +45,13 @@ bool faces_like(const LevelPolygon& upright, const LevelPolygon& other) {
 }
 
 bool covers_upright(const LevelPolygon& upright, double u, double height) {
-  const Eigen::Vector2d run = along(upright), place(u, height);
-  bool inside = false;
+  const Eigen::Vector2d run = along(upright);
+  std::vector<Ring2d> flat;
   for (const auto& ring : upright.rings) {
-    Ring2d flat;
-    for (const Eigen::Vector3d& p : ring) flat.emplace_back(run.dot(p.head<2>()), p.z());
-    inside ^= is_inside(flat, place);
+    flat.emplace_back();
+    for (const Eigen::Vector3d& p : ring) flat.back().emplace_back(run.dot(p.head<2>()), p.z());
   }
-  return inside;
+  return rings_contain(flat, {u, height});
 }
 
 std::size_t shared_vertices(const LevelPolygon& a, const LevelPolygon& b) {
