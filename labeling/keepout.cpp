@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "labeling/plan_ring.hpp"
+#include "labeling/plan/plan_ring.hpp"
 #include "meshing/plane_geometry.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/pose.hpp"

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "labeling/plan_ring.hpp"
+#include "labeling/plan/plan_ring.hpp"
 
 namespace planum {
 namespace {

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 
 #include "labeling/label_params.hpp"
-#include "labeling/openings.hpp"
+#include "labeling/rooms/openings.hpp"
 #include "meshing/polygon_map.hpp"
 
 namespace planum {

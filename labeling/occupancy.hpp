@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include "labeling/floor_grid.hpp"
 #include "labeling/labels.hpp"
+#include "labeling/plan/floor_grid.hpp"
 #include "meshing/polygon_map.hpp"
 #include "slam/core/cloud.hpp"
 #include "slam/core/triangle_mesh.hpp"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "labeling/labels.hpp"
-#include "labeling/openings.hpp"
+#include "labeling/rooms/openings.hpp"
 #include "meshing/polygon_map.hpp"
 
 namespace planum {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "labeling/plan_ring.hpp"
+#include "labeling/plan/plan_ring.hpp"
 #include "slam/core/pose.hpp"
 
 namespace planum {

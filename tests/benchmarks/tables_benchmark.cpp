@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "labeling/rooms.hpp"
+#include "labeling/rooms/rooms.hpp"
 #include "meshing/normals.hpp"
 #include "meshing/polygons.hpp"
 #include "meshing/surface.hpp"

@@ -1,4 +1,4 @@
-#include "labeling/blind_windows.hpp"
+#include "labeling/rooms/blind_windows.hpp"
 
 #include <gtest/gtest.h>
 

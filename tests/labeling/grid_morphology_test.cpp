@@ -1,11 +1,11 @@
-#include "labeling/grid_morphology.hpp"
+#include "labeling/plan/grid_morphology.hpp"
 
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "labeling/grid_border.hpp"
-#include "labeling/plan_ring.hpp"
+#include "labeling/plan/grid_border.hpp"
+#include "labeling/plan/plan_ring.hpp"
 
 namespace planum {
 namespace {

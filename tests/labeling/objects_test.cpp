@@ -1,10 +1,10 @@
-#include "labeling/objects.hpp"
+#include "labeling/objects/objects.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "labeling/object_models.hpp"
+#include "labeling/objects/object_models.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
 #include "slam/sensor/furniture.hpp"

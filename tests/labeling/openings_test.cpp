@@ -1,4 +1,4 @@
-#include "labeling/openings.hpp"
+#include "labeling/rooms/openings.hpp"
 
 #include <random>
 

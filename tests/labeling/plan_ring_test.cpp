@@ -1,4 +1,4 @@
-#include "labeling/plan_ring.hpp"
+#include "labeling/plan/plan_ring.hpp"
 
 #include <algorithm>
 

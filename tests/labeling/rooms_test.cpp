@@ -1,4 +1,4 @@
-#include "labeling/rooms.hpp"
+#include "labeling/rooms/rooms.hpp"
 
 #include <random>
 

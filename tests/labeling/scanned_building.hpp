@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "labeling/rooms.hpp"
+#include "labeling/rooms/rooms.hpp"
 #include "meshing/normals.hpp"
 #include "slam/sensor/building.hpp"
 #include "slam/sensor/simulator.hpp"

@@ -1,4 +1,4 @@
-#include "labeling/storeys.hpp"
+#include "labeling/rooms/storeys.hpp"
 
 #include <array>
 

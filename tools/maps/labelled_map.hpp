@@ -3,8 +3,8 @@
 #include <span>
 
 #include "labeling/labels.hpp"
-#include "labeling/rooms.hpp"
-#include "labeling/scene_object.hpp"
+#include "labeling/objects/scene_object.hpp"
+#include "labeling/rooms/rooms.hpp"
 #include "meshing/polygon_map.hpp"
 
 namespace planum {

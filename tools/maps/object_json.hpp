@@ -4,8 +4,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "labeling/rooms.hpp"
-#include "labeling/scene_object.hpp"
+#include "labeling/objects/scene_object.hpp"
+#include "labeling/rooms/rooms.hpp"
 
 namespace planum {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <span>
 
-#include "labeling/scene_object.hpp"
+#include "labeling/objects/scene_object.hpp"
 
 namespace planum {
 

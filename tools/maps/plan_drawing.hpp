@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "labeling/rooms.hpp"
+#include "labeling/rooms/rooms.hpp"
 
 namespace planum {
 

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "labeling/rooms.hpp"
+#include "labeling/rooms/rooms.hpp"
 
 namespace planum {
 

@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "labeling/model_surface.hpp"
+#include "labeling/objects/model_surface.hpp"
 #include "slam/core/error.hpp"
 #include "slam/io/obj.hpp"
 #include "slam/sensor/furniture.hpp"

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "labeling/object_models.hpp"
+#include "labeling/objects/object_models.hpp"
 
 namespace planum {
 

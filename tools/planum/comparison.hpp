@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "labeling/rooms.hpp"
+#include "labeling/rooms/rooms.hpp"
 #include "slam/sensor/building.hpp"
 
 namespace planum {

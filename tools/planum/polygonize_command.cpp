@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "labeling/labels.hpp"
-#include "labeling/rooms.hpp"
+#include "labeling/rooms/rooms.hpp"
 #include "meshing/free_space.hpp"
 #include "meshing/laser_shadows.hpp"
 #include "meshing/normals.hpp"

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "labeling/rooms.hpp"
+#include "labeling/rooms/rooms.hpp"
 #include "slam/core/cloud.hpp"
 
 namespace planum {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "labeling/labels.hpp"
-#include "labeling/rooms.hpp"
-#include "labeling/scene_object.hpp"
+#include "labeling/objects/scene_object.hpp"
+#include "labeling/rooms/rooms.hpp"
 #include "meshing/polygon_map.hpp"
 #include "slam/core/cloud.hpp"
 #include "slam/core/progress.hpp"

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "labeling/labels.hpp"
-#include "labeling/objects.hpp"
+#include "labeling/objects/objects.hpp"
 #include "labeling/occupancy.hpp"
-#include "labeling/rooms.hpp"
+#include "labeling/rooms/rooms.hpp"
 #include "meshing/free_space.hpp"
 #include "meshing/laser_shadows.hpp"
 #include "meshing/normals.hpp"

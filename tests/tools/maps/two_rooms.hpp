@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "labeling/rooms.hpp"
+#include "labeling/rooms/rooms.hpp"
 #include "slam/core/pose.hpp"
 
 namespace planum::testing {

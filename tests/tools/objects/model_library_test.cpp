@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "labeling/model_surface.hpp"
+#include "labeling/objects/model_surface.hpp"
 #include "slam/core/error.hpp"
 #include "tests/support/shared_data.hpp"
 

@@ -4,11 +4,11 @@
 
 #include <fmt/format.h>
 
-#include "labeling/blind_windows.hpp"
-#include "labeling/object_models.hpp"
-#include "labeling/objects.hpp"
+#include "labeling/objects/object_models.hpp"
+#include "labeling/objects/objects.hpp"
 #include "labeling/occupancy.hpp"
-#include "labeling/storeys.hpp"
+#include "labeling/rooms/blind_windows.hpp"
+#include "labeling/rooms/storeys.hpp"
 #include "tools/objects/model_library.hpp"
 #include "tools/workflow/results.hpp"
 #include "tools/workflow/stages/stages.hpp"
