@@ -73,13 +73,15 @@ class RestBuilder {
     }
   }
 
-  /// Puts dropped points that the rest uses onto the simplified border, spaced as they were.
+  /// Puts dropped points that the rest uses onto the simplified border, spaced as they were. That
+  /// is the border of the region on the left: the rest may hang on other planes at the ends of a
+  /// chain.
   void straighten() {
     for (const ChainShape& shape : shapes_) {
       if (shape.right.empty() || shape.straight) continue;
       const std::size_t count = shape.left.size();
       const auto at = [&](std::size_t i) -> const Eigen::Vector3d& {
-        return corners_.points[shape.right[i % count]];
+        return corners_.points[shape.left[i % count]];
       };
       each_dropped(shape, [&](std::size_t i, std::size_t a, std::size_t b) {
         double before = 0, length = 0;

@@ -202,6 +202,47 @@ TEST(Polygons, AreValidHoweverNoisyTheMeshIs) {
   }
 }
 
+/// A wall with panels a few centimetres before it and lumps all over, seen from above.
+TriangleMesh panelled_wall(unsigned seed) {
+  constexpr std::uint32_t columns = 80, rows = 60;
+  constexpr double cell = 0.05;
+  std::mt19937 random(seed);
+  const auto draw = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  std::vector<double> height(columns * rows, 0);
+  const auto raise = [&](std::uint32_t at_most, double by) {
+    const std::uint32_t x = random() % columns, y = random() % rows;
+    const std::uint32_t width = 1 + random() % at_most, depth = 1 + random() % at_most;
+    for (std::uint32_t j = y; j < std::min(rows, y + depth); ++j)
+      for (std::uint32_t i = x; i < std::min(columns, x + width); ++i)
+        height[j * columns + i] += by;
+  };
+  for (int panel = 0; panel < 12; ++panel) raise(20, draw(0.01, 0.06));
+  for (int lump = 0; lump < 40; ++lump) {
+    const std::uint32_t x = random() % columns, y = random() % rows;
+    for (std::uint32_t j = y; j < std::min(rows, y + 6); ++j)
+      for (std::uint32_t i = x; i < std::min(columns, x + 6); ++i)
+        height[j * columns + i] += draw(0, 0.3);
+  }
+  TriangleMesh mesh;
+  for (std::uint32_t j = 0; j < rows; ++j)
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      const Vector3d v(cell * i, cell * j, height[j * columns + i]);
+      mesh.vertices.push_back(v.cast<float>());
+      if (i == 0 || j == 0) continue;
+      const std::uint32_t d = j * columns + i, c = d - 1, b = d - columns, a = b - 1;
+      mesh.triangles.push_back({a, b, d});
+      mesh.triangles.push_back({a, d, c});
+    }
+  testing::add_noise(mesh, 0.001, seed);
+  return mesh;
+}
+
+TEST(Polygons, OfPanelsLieInTheirPlanesHoweverRoughTheirSteps) {
+  for (unsigned seed = 0; seed < 20; ++seed) expect_laws(polygons_of(panelled_wall(seed), 0.05));
+}
+
 TEST(Polygons, CloseSmallHolesAndKeepLargeOnes) {
   TriangleMesh mesh = testing::box_room_mesh({4, 3, 2.5}, 0.1);
   const auto is_in_hole = [&](const std::array<std::uint32_t, 3>& t) {

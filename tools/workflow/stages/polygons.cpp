@@ -65,7 +65,7 @@ void work(StageContext& context) {
 
 Stage polygons_stage() {
   return {.name = "polygons",
-          .version = 5,
+          .version = 6,
           .unit = "steps",
           .needs = {"cloud", "mesh"},
           .parameters = {"polygons", "mesh.voxel_m"},
