@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -30,8 +33,11 @@ struct FloorGrid {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
            static_cast<std::size_t>(column);
   }
-  int column_of(double x) const { return static_cast<int>(std::floor(x / cell)); }
-  int row_of(double y) const { return static_cast<int>(std::floor(y / cell)); }
+  /// Of a coordinate (m) however far outside.
+  int column_of(double x) const {
+    return static_cast<int>(std::clamp(std::floor(x / cell), -1e9, 1e9));
+  }
+  int row_of(double y) const { return column_of(y); }
   int column(std::size_t index) const {
     return static_cast<int>(index % static_cast<std::size_t>(columns));
   }
@@ -56,11 +62,35 @@ using CellMask = std::vector<std::uint8_t>;
 /// large that it would need more than 2^26 cells.
 FloorGrid make_floor_grid(const Cloud& cloud, double cell);
 
-/// Calls visit(index) for every cell that the segment from a to b touches, in order, clipped to the
+/// The part of the segment from a to b on a grid and the cells around it, as shares of its length;
+/// nothing if it passes by. Liang & Barsky, A New Concept and Method for Line Clipping, ACM
+/// Transactions on Graphics 3 (1984).
+inline std::optional<std::pair<double, double>> part_on(const FloorGrid& grid,
+                                                        const Eigen::Vector2d& a,
+                                                        const Eigen::Vector2d& b) {
+  const Eigen::Vector2d d = b - a, low = Eigen::Vector2d::Constant(-grid.cell);
+  const Eigen::Vector2d high = grid.cell * Eigen::Vector2d(grid.columns + 1, grid.rows + 1);
+  double begin = 0, end = 1;
+  for (int k = 0; k < 2; ++k) {
+    if (d[k] == 0 && (a[k] < low[k] || a[k] > high[k])) return std::nullopt;
+    if (d[k] == 0) continue;
+    const double to_low = (low[k] - a[k]) / d[k], to_high = (high[k] - a[k]) / d[k];
+    begin = std::max(begin, std::min(to_low, to_high));
+    end = std::min(end, std::max(to_low, to_high));
+  }
+  if (begin > end) return std::nullopt;
+  return std::pair(begin, end);
+}
+
+/// Calls visit(index) for every cell that the segment touches, in order, clipped to the
 /// grid. Amanatides & Woo, A Fast Voxel Traversal Algorithm for Ray Tracing, Eurographics 1987.
 template <typename Visit>
-void for_each_cell_between(const FloorGrid& grid, const Eigen::Vector2d& a,
-                           const Eigen::Vector2d& b, Visit&& visit) {
+void for_each_cell_between(const FloorGrid& grid, const Eigen::Vector2d& from,
+                           const Eigen::Vector2d& to, Visit&& visit) {
+  const auto part = part_on(grid, from, to);
+  if (!part) return;
+  const Eigen::Vector2d a = part->first > 0 ? from + part->first * (to - from) : from;
+  const Eigen::Vector2d b = part->second < 1 ? from + part->second * (to - from) : to;
   int column = grid.column_of(a.x()), row = grid.row_of(a.y());
   const int last_column = grid.column_of(b.x()), last_row = grid.row_of(b.y());
   const Eigen::Vector2d d = b - a;

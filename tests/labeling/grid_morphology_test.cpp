@@ -108,25 +108,5 @@ TEST(GridBorder, EnclosesTheCells) {
   }
 }
 
-TEST(FloorGrid, VisitsEveryCellOnTheWay) {
-  FloorGrid grid;
-  grid.cell = 0.5;
-  grid.columns = columns;
-  grid.rows = rows;
-  std::mt19937 random(4);
-  std::uniform_real_distribution<double> x(-2, 13), y(-2, 10);
-  for (int draw = 0; draw < 300; ++draw) {
-    const Eigen::Vector2d a(x(random), y(random)), b(x(random), y(random));
-    std::vector<std::size_t> visited;
-    for_each_cell_between(grid, a, b, [&](std::size_t cell) { visited.push_back(cell); });
-    for (int i = 0; i <= 1000; ++i) {
-      const std::ptrdiff_t cell = grid.find(a + (b - a) * (i / 1000.0));
-      if (cell < 0) continue;
-      EXPECT_TRUE(std::find(visited.begin(), visited.end(), static_cast<std::size_t>(cell)) !=
-                  visited.end());
-    }
-  }
-}
-
 }  // namespace
 }  // namespace planum

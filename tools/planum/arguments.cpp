@@ -4,14 +4,19 @@
 
 namespace planum {
 
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides,
+                   const std::string& example) {
+  command
+      .add_option("--set", overrides,
+                  "replaces a value of the project file, e.g. --set " + example + "; repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
 void add_project_arguments(CLI::App& command, ProjectArguments& arguments) {
   command.add_option("PROJECT", arguments.file, "project file, or the directory of project.toml")
       ->capture_default_str();
-  command
-      .add_option("--set", arguments.overrides,
-                  "replaces a value of the project file, e.g. --set mesh.voxel_m=0.1; repeatable")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_overrides(command, arguments.overrides, "mesh.voxel_m=0.1");
 }
 
 Project read_project(const ProjectArguments& arguments) {

@@ -21,6 +21,10 @@ struct ProjectArguments {
 /// PROJECT and --set.
 void add_project_arguments(CLI::App& command, ProjectArguments& arguments);
 
+/// --set for commands that have settings but no project; `example` is a key=value.
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides,
+                   const std::string& example);
+
 /// Reads what they name.
 Project read_project(const ProjectArguments& arguments);
 

@@ -1,43 +1,43 @@
+#include <limits>
 #include <map>
+#include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "labeling/labels.hpp"
-#include "labeling/rooms/rooms.hpp"
 #include "meshing/free_space.hpp"
-#include "meshing/laser_shadows.hpp"
 #include "meshing/normals.hpp"
-#include "meshing/polygons.hpp"
 #include "meshing/surface.hpp"
-#include "meshing/triangulation.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
 #include "slam/io/ply.hpp"
 #include "slam/io/tum.hpp"
 #include "slam/sensor/range_limits.hpp"
-#include "tools/maps/map_glb.hpp"
-#include "tools/maps/map_mesh.hpp"
-#include "tools/maps/polygons_json.hpp"
+#include "tools/objects/model_library.hpp"
 #include "tools/planum/arguments.hpp"
 #include "tools/planum/cli11.hpp"
 #include "tools/planum/commands.hpp"
 #include "tools/planum/console.hpp"
 #include "tools/planum/scan_file.hpp"
+#include "tools/workflow/map_files.hpp"
+#include "tools/workflow/map_steps.hpp"
 
 namespace planum {
 namespace {
 
 struct PolygonizeArguments {
   std::filesystem::path cloud, origins, output;
-  std::vector<double> origin;  ///< m, x y z; empty: not given
-  SurfaceParams surface;
+  std::vector<double> origin;   ///< m, x y z; empty: not given
+  std::optional<double> voxel;  ///< m
+  std::vector<std::string> overrides;
   WorkArguments work;
 };
 
 /// A cloud, and where its scans were taken.
 struct SeenCloud {
-  Cloud cloud;  ///< `scan` counts the origins
-  std::vector<Eigen::Vector3d> origins;
+  Cloud cloud;                           ///< `scan` counts the origins
+  std::vector<Eigen::Vector3d> origins;  ///< m; none: nobody says where
+  std::vector<std::uint32_t> numbers;    ///< of the scans
 };
 
 /// The points of a file that are points: scanners write nan, inf or zero for beams that met
@@ -60,69 +60,93 @@ Cloud read_cloud(const std::filesystem::path& file, Console& console) {
 }
 
 /// The scans of a cloud go by the first column of the trajectory. Without one, a scanner at the
-/// origin of the frame, or at the place given, saw everything.
+/// place given saw everything.
 SeenCloud read_seen_cloud(const PolygonizeArguments& arguments, Console& console) {
-  SeenCloud seen{read_cloud(arguments.cloud, console), {}};
+  SeenCloud seen{read_cloud(arguments.cloud, console), {}, {}};
   if (arguments.origins.empty()) {
-    seen.origins = {Eigen::Vector3d::Zero()};
-    if (!arguments.origin.empty())
-      seen.origins = {Eigen::Vector3d::Map(arguments.origin.data())};
-    else if (seen.cloud.normals.empty())
-      console.warn(
-          "nobody says where the scanner stood (--origin, --origins): it is taken to be at 0 0 0, "
-          "and surfaces face that place");
-    seen.cloud.scan.clear();
+    if (!arguments.origin.empty()) seen.origins = {Eigen::Vector3d::Map(arguments.origin.data())};
+    seen.numbers = {0};
+    seen.cloud.scan.assign(seen.cloud.points.size(), 0);
     return seen;
   }
   std::map<double, std::uint32_t> line_of;
   for (const StampedPose& pose : read_tum(arguments.origins)) {
     line_of.emplace(pose.stamp, static_cast<std::uint32_t>(seen.origins.size()));
     seen.origins.push_back(pose.pose.translation());
+    const bool is_number =
+        pose.stamp >= 0 && pose.stamp <= std::numeric_limits<std::uint32_t>::max();
+    seen.numbers.push_back(is_number ? static_cast<std::uint32_t>(pose.stamp) : 0);
   }
   if (seen.cloud.scan.empty() && seen.origins.size() > 1)
     throw Error(
         fmt::format("{}: points do not know their scan (no property `scan`), so it is "
                     "unknown which of the {} places in {} saw them",
                     arguments.cloud.string(), seen.origins.size(), arguments.origins.string()));
-  for (std::uint32_t& scan : seen.cloud.scan) {
-    const auto line = line_of.find(scan);
-    if (line == line_of.end())
-      throw Error(fmt::format("{}: a point is of scan {}, which {} does not have",
-                              arguments.cloud.string(), scan, arguments.origins.string()));
-    scan = line->second;
-  }
+  if (seen.cloud.scan.empty())
+    seen.cloud.scan.assign(seen.cloud.points.size(), 0);
+  else
+    for (std::uint32_t& scan : seen.cloud.scan) {
+      const auto line = line_of.find(scan);
+      if (line == line_of.end())
+        throw Error(fmt::format("{}: a point is of scan {}, which {} does not have",
+                                arguments.cloud.string(), scan, arguments.origins.string()));
+      scan = line->second;
+    }
   return seen;
+}
+
+/// Without the place of the scanner nothing is known of free space, and so of what is made from it.
+void leave_out_free_space(MapSettings& maps) { maps.occupancy = maps.octomap = false; }
+
+Settings settings_of(const PolygonizeArguments& arguments) {
+  Settings settings = default_settings(arguments.overrides);
+  if (arguments.voxel) settings.surface.voxel = *arguments.voxel;
+  return settings;
 }
 
 void polygonize_command(const PolygonizeArguments& arguments) {
   set_thread_count(arguments.work.threads);
   Console console(arguments.work.quiet);
-  auto [cloud, origins] = read_seen_cloud(arguments, console);
-  if (cloud.normals.empty()) {
-    cloud.normals = estimate_normals(cloud, origins, {}, console.start_bar("normals", "points"));
+  Settings settings = settings_of(arguments);
+  auto [cloud, origins, numbers] = read_seen_cloud(arguments, console);
+  const bool is_place_known = !origins.empty();
+  if (!is_place_known) {
+    console.warn(fmt::format(
+        "nobody says where the scanner stood (--origin, --origins){}; there are no rooms, no "
+        "objects, no occupancy.yaml and no map.bt",
+        cloud.normals.empty() ? ": it is taken to be at 0 0 0, and surfaces face that place" : ""));
+    leave_out_free_space(settings.maps);
   }
-  drop_normals_in_free_space(cloud, origins);
+  if (cloud.normals.empty()) {
+    const std::vector<Eigen::Vector3d> guess{Eigen::Vector3d::Zero()};
+    cloud.normals = estimate_normals(cloud, is_place_known ? origins : guess, settings.normals,
+                                     console.start_bar("normals", "points"));
+  }
+  if (is_place_known) drop_normals_in_free_space(cloud, origins, settings.free_space);
   const TriangleMesh mesh =
-      reconstruct(cloud, arguments.surface, console.start_bar("mesh", "cells"));
+      reconstruct(cloud, settings.surface, console.start_bar("mesh", "cells"));
   console.end_bar();
-  const double voxel = arguments.surface.voxel;
-  const Regions regions = grow_planes(mesh, cloud, region_params(voxel));
-  const PolygonMap map =
-      with_shadows_filled(polygonize(mesh, regions, polygon_params(voxel)), cloud, origins);
-  const Labels labels = label(map);
-  RoomMap no_rooms;
-  no_rooms.room_of_polygon.assign(map.polygons.size(), -1);
-  const TriangulatedMap triangles = triangulated(map);
+  const PolygonMap map = polygon_map(mesh, cloud, origins, settings);
+  const Labelled labelled = labelled_map(
+      map, cloud, origins,
+      settings.models.empty() ? std::vector<std::filesystem::path>() : model_files(settings.models),
+      settings);
 
   std::filesystem::create_directories(arguments.output);
   write_ply(arguments.output / "mesh.ply", mesh);
-  write_polygons_json(arguments.output / "polygons.json", {map, labels, no_rooms});
-  write_map_ply(arguments.output / "map.ply", triangles, labels);
-  write_map_obj(arguments.output / "map.obj", triangles, labels);
-  if (!triangles.mesh.triangles.empty())
-    write_map_glb(arguments.output / "map.glb", triangles, {map, labels, no_rooms});
-  fmt::print("{} polygons in {}: polygons.json, map.ply, map.obj, map.glb, mesh.ply\n",
-             map.polygons.size(), arguments.output.string());
+  MapFiles files = write_map_files(arguments.output,
+                                   {.cloud = cloud,
+                                    .origins = origins,
+                                    .scan_numbers = numbers,
+                                    .mesh = mesh,
+                                    .polygons = map,
+                                    .labelled = labelled},
+                                   settings);
+  if (const auto why = why_not_level(labelled.labels)) console.warn("no rooms: " + *why);
+  for (const std::string& warning : files.warnings) console.warn(warning);
+  files.written.push_back("mesh.ply");
+  fmt::print("{} polygons in {}: {}\n", map.polygons.size(), arguments.output.string(),
+             fmt::join(files.written, ", "));
 }
 
 }  // namespace
@@ -148,8 +172,8 @@ void add_polygonize_command(CLI::App& app) {
   command->add_option("--out", arguments->output, "directory for the map")
       ->type_name("DIR")
       ->required();
-  command->add_option("--voxel-m", arguments->surface.voxel, "edge of the grid's cells")
-      ->capture_default_str();
+  command->add_option("--voxel-m", arguments->voxel, "edge of the grid's cells, as mesh.voxel_m");
+  add_overrides(*command, arguments->overrides, "maps.robot_high_m=0.8");
   add_work_arguments(*command, arguments->work);
   command->callback([arguments] { polygonize_command(*arguments); });
 }

@@ -177,6 +177,12 @@ void apply_override(const std::string& text, Project& project) {
 
 }  // namespace
 
+Settings default_settings(const std::vector<std::string>& overrides) {
+  Project project;
+  for (const std::string& text : overrides) apply_override(text, project);
+  return project.settings;
+}
+
 Project read_project(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   Project project;
   project.file = std::filesystem::is_directory(file) ? file / "project.toml" : file;

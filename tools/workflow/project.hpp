@@ -28,6 +28,9 @@ struct Project {
 Project read_project(const std::filesystem::path& file,
                      const std::vector<std::string>& overrides = {});
 
+/// The settings of a project file that sets nothing, then overrides. Throws as read_project does.
+Settings default_settings(const std::vector<std::string>& overrides);
+
 /// A path of the project file, absolute.
 std::filesystem::path resolved(const Project& project, const std::string& path);
 

@@ -6,9 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "labeling/labels.hpp"
-#include "labeling/objects/scene_object.hpp"
-#include "labeling/rooms/rooms.hpp"
 #include "meshing/polygon_map.hpp"
 #include "slam/core/cloud.hpp"
 #include "slam/core/progress.hpp"
@@ -18,6 +15,7 @@
 #include "slam/sensor/range_limits.hpp"
 #include "tools/workflow/cache_layout.hpp"
 #include "tools/workflow/digest.hpp"
+#include "tools/workflow/labelled.hpp"
 
 namespace planum {
 
@@ -72,13 +70,6 @@ struct World {
   std::vector<std::uint8_t> is_mapped;       ///< for each scan; others hang on nothing
   Pose world_from_input = Pose::Identity();  ///< how the world was turned to be level
   double up_confidence = 0;                  ///< in [0, 1]; 0: not levelled
-};
-
-/// What `labels` makes.
-struct Labelled {
-  Labels labels;
-  RoomMap rooms;
-  std::vector<SceneObject> objects;
 };
 
 /// The results of all stages of one run.

@@ -64,6 +64,36 @@ TEST_F(Polygonize, MapsARoomWhoseScansGoByTheirNumbers) {
   EXPECT_NEAR(floor, 12, 0.05);
   EXPECT_NEAR(ceiling, 12, 0.05);
   EXPECT_NEAR(wall, 35, 0.15);
+  ASSERT_EQ(map["rooms"].size(), 1u);
+  EXPECT_NEAR(map["rooms"][0]["area_m2"].get<double>(), 12, 0.05);
+  for (const char* file : {"map.glb", "occupancy.yaml", "map.bt", "floorplan.svg", "cloud.pcd"})
+    EXPECT_TRUE(std::filesystem::exists(directory_ / "map" / file)) << file;
+}
+
+TEST_F(Polygonize, TakesTheKeysOfAProjectFile) {
+  Outcome outcome = planum_({"polygonize", "cloud.ply", "--origins", "places.tum", "--out", "map",
+                             "--set", "maps.glb=false", "--set", "maps.occupancy_cell_m=0.5"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(directory_ / "map" / "map.glb"));
+  EXPECT_SAYS(file_text(directory_ / "map" / "occupancy.yaml"), "resolution: 0.5");
+  outcome = planum_({"polygonize", "cloud.ply", "--out", "map", "--set", "maps.glbb=false"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_SAYS(outcome.err, "unknown key 'glbb' in [maps]; did you mean 'glb'?");
+}
+
+TEST_F(Polygonize, OfATiltedRoomHasNoFloorPlan) {
+  const Pose tilt(Eigen::AngleAxisd(radians(20), Eigen::Vector3d(1, 2, 0).normalized()));
+  write_ply(directory_ / "cloud.ply", transformed(room_cloud(3, 3), tilt));
+  write_tum(directory_ / "one.tum", {{3, tilt * Pose(Eigen::Translation3d(1, 1.5, 1.2))}});
+  const Outcome outcome =
+      planum_({"polygonize", "cloud.ply", "--origins", "one.tum", "--out", "map"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_SAYS(outcome.err, "no rooms: the world is 20 degrees from level");
+  EXPECT_SAYS(outcome.err, "no occupancy.yaml: the world is 20 degrees from level");
+  EXPECT_SAYS(outcome.err, "no navmesh.bin: the world is 20 degrees from level");
+  const auto map = nlohmann::json::parse(file_text(directory_ / "map" / "polygons.json"));
+  EXPECT_TRUE(map["rooms"].empty());
+  EXPECT_EQ(map["polygons"][0]["label"], "floor");
 }
 
 TEST_F(Polygonize, NamesAScanThatHasNoPlace) {
@@ -92,6 +122,11 @@ TEST_F(Polygonize, TakesOnePlaceAndSaysWhichItAssumes) {
   write_ply(directory_ / "cloud.ply", cloud);
   Outcome outcome = planum_({"polygonize", "cloud.ply", "--out", "map"});
   EXPECT_SAYS(outcome.err, "it is taken to be at 0 0 0");
+  EXPECT_SAYS(outcome.err, "there are no rooms, no objects, no occupancy.yaml and no map.bt");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_TRUE(
+      nlohmann::json::parse(file_text(directory_ / "map" / "polygons.json"))["rooms"].empty());
+  EXPECT_FALSE(std::filesystem::exists(directory_ / "map" / "occupancy.yaml"));
   outcome = planum_({"polygonize", "cloud.ply", "--origin", "12", "21.5", "31.25", "--out", "map"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");

@@ -149,6 +149,20 @@ TEST_F(Workflow, GivesTheSameBytesFromDiskAndOnOneThread) {
   expect_same_results(expected, result_files(out()));
 }
 
+TEST_F(Workflow, GivesTheMapsThatPolygonizeGivesOfItsCloud) {
+  const Outcome outcome =
+      planum_({"polygonize", "out/cloud.ply", "--origins", "out/trajectory.tum", "--out", "again"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  int compared = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(directory_ / "again")) {
+    if (!entry.is_regular_file()) continue;
+    const auto name = std::filesystem::relative(entry.path(), directory_ / "again");
+    ++compared;
+    EXPECT_TRUE(file_text(out() / name) == file_text(entry.path())) << name << " differs";
+  }
+  EXPECT_GT(compared, 15);
+}
+
 TEST_F(Workflow, CanBeKilledAtAnyMomentAndFinished) {
   const auto expected = result_files(out());
   std::mt19937 random(7);
