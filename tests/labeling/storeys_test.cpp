@@ -101,6 +101,32 @@ TEST(Storeys, WithoutScansHaveNoRooms) {
   EXPECT_EQ(rooms.storeys.size(), 3u);
 }
 
+TEST(Storeys, OpenToEachOtherAreARoomEach) {
+  // A hall 10 x 7 x 6.2 m with a gallery over three fifths of it.
+  testing::ModelMaker model;
+  model.tunnel({0, 0, 0}, {10, 7, 6.2});
+  for (const double x : {0.0, 10.0}) model.wall_across_x(x, {0, 7}, {0, 6.2});
+  for (const double z : {2.8, 3.1}) model.rectangle({0, 0, z}, {6, 0, 0}, {0, 7, 0});
+  model.rectangle({6, 0, 2.8}, {0, 7, 0}, {0, 0, 0.3});
+  std::vector<Pose> poses;
+  for (const auto& [x, y, z, heading] :
+       {std::array{8.0, 3.0, 0.6, 90.0}, std::array{5.0, 3.5, 0.6, 180.0},
+        std::array{8.0, 5.5, 0.6, 180.0}, std::array{3.0, 2.0, 3.7, 0.0},
+        std::array{4.5, 5.0, 3.7, -60.0}, std::array{1.5, 5.5, 3.7, 200.0}})
+    poses.push_back(pose_from_xyz_ypr({x, y, z}, radians(heading), 0, 0));
+  const RoomMap rooms = rooms_of(testing::scanned(model.mesh, poses), {0, 3.1});
+  ASSERT_EQ(rooms.rooms.size(), 2u);
+  EXPECT_TRUE(rooms.openings.empty());
+  EXPECT_EQ(rooms.rooms[0].storey, 0u);
+  EXPECT_EQ(rooms.rooms[1].storey, 1u);
+  EXPECT_NEAR(rooms.rooms[0].height, 2.8, 0.02);
+  EXPECT_NEAR(rooms.rooms[1].height, 3.1, 0.02);
+  // Which of them has the place beside the gallery is left open (docs/rooms.md).
+  EXPECT_GT(rooms.rooms[0].area, 41);
+  EXPECT_GT(rooms.rooms[1].area, 41);
+  for (const Room& room : rooms.rooms) EXPECT_LT(room.area, 70.5);
+}
+
 TEST(Storeys, NeedScanIndices) {
   ScannedWorld world = two_storeys();
   world.cloud.scan.clear();

@@ -8,6 +8,7 @@
 #include "labeling/objects/object_models.hpp"
 #include "labeling/objects/objects.hpp"
 #include "labeling/occupancy.hpp"
+#include "labeling/reflections.hpp"
 #include "labeling/rooms/blind_windows.hpp"
 #include "labeling/rooms/storeys.hpp"
 #include "meshing/laser_shadows.hpp"
@@ -73,7 +74,8 @@ Labelled labelled_map(const PolygonMap& map, const Cloud& cloud,
   made.labels = label(map, settings.labels);
   progress.report(1, steps);
   made.rooms = rooms_of(made.labels, map, cloud, origins, settings.rooms);
-  made.labels = with_openings(map, std::move(made.labels), made.rooms.openings);
+  made.labels = without_reflections(
+      map, with_openings(map, std::move(made.labels), made.rooms.openings), made.rooms);
   progress.report(2, steps);
   if (origins.empty()) return made;
   made.objects =

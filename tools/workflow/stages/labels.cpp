@@ -50,7 +50,7 @@ void work(StageContext& context) {
 
 Stage labels_stage() {
   return {.name = "labels",
-          .version = 4,
+          .version = 5,
           .unit = "steps",
           .needs = {"cloud", "polygons"},
           .parameters = {"labels", "rooms"},
