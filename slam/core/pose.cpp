@@ -79,6 +79,10 @@ Pose pose_from_xyz_ypr(const Eigen::Vector3d& position, double yaw, double pitch
   return pose;
 }
 
+Eigen::Quaterniond turn_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
 Pose orthonormalized(const Pose& pose) {
   Pose result = pose;
   result.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();

@@ -39,6 +39,9 @@ double rotation_angle(const Pose& a, const Pose& b = Pose::Identity());
 /// Rz(yaw) Ry(pitch) Rx(roll) at a position; angles in radians.
 Pose pose_from_xyz_ypr(const Eigen::Vector3d& position, double yaw, double pitch, double roll);
 
+/// The smallest turn after which a direction is another one.
+Eigen::Quaterniond turn_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
 /// The same pose with its rotation made orthonormal again (after long products).
 Pose orthonormalized(const Pose& pose);
 

@@ -129,7 +129,7 @@ void turn_upright([[maybe_unused]] const GraphProblem<Manifold>& problem,
         if (std::binary_search(part.begin(), part.end(), seen.pose))
           seen_up += poses[seen.pose].linear() * seen.up_in_pose / (seen.sigma * seen.sigma);
       if (is_held || !(seen_up.norm() > 0)) continue;
-      const auto turn = Eigen::Quaterniond::FromTwoVectors(seen_up, problem.terms.up);
+      const auto turn = turn_between(seen_up, problem.terms.up);
       for (const Anchor& anchor : problem.terms.anchors) {
         if (!std::binary_search(part.begin(), part.end(), anchor.pose)) continue;
         const Eigen::Vector3d pivot = poses[anchor.pose].translation();

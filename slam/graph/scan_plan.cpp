@@ -307,7 +307,7 @@ Eigen::Matrix3d level_from_scan(const MatchingScan& scan) {
     if (count < scan.points.size() / 20 || count == 0) break;
     up = sum.normalized();
   }
-  return Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  return turn_between(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
 
 ScanPlan scan_plan(const MatchingScan& scan) {

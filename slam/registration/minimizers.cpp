@@ -77,7 +77,7 @@ Eigen::Matrix3d rotation_by_square_root(const PairSums& sums) {
   Eigen::Vector3d b2 = m * u2;
   b2 -= b1.dot(b2) * b1;
   if (b2.norm() <= 1e-12 * (m * u1).norm())  // a line: the smallest turn
-    return Eigen::Quaterniond::FromTwoVectors(u1, b1).toRotationMatrix();
+    return turn_between(u1, b1).toRotationMatrix();
   b2.normalize();
   return b1 * u1.transpose() + b2 * u2.transpose() + b1.cross(b2) * u1.cross(u2).transpose();
 }

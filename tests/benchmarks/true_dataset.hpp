@@ -87,7 +87,7 @@ inline Pose levelling(Cloud cloud, const std::vector<Eigen::Vector3d>& origins) 
   const auto found = estimate_up(cloud.normals, {}, Eigen::Vector3d::UnitZ());
   if (!found) return Pose::Identity();
   const Eigen::Vector3d up = up_of_planes(cloud, found->up);
-  return Pose(Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()));
+  return Pose(turn_between(up, Eigen::Vector3d::UnitZ()));
 }
 
 inline std::optional<Pose> place_in_model(const TrueDataset& data) {

@@ -45,7 +45,7 @@ bool level(World& world, Cloud& cloud) {
   if (!found) return false;
   const Eigen::Vector3d pivot = world.odometry.front().translation();
   const Eigen::Vector3d up = up_of_planes(cloud, found->up);
-  const auto turn = Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ());
+  const auto turn = turn_between(up, Eigen::Vector3d::UnitZ());
   world.world_from_input = Eigen::Translation3d(pivot) * turn * Eigen::Translation3d(-pivot);
   world.up_confidence = found->confidence;
   cloud = transformed(cloud, world.world_from_input);
