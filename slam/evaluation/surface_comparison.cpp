@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
 #include "slam/core/robust.hpp"
+#include "slam/core/symmetric_eigen.hpp"
 #include "slam/evaluation/error_statistics.hpp"
 
 namespace planum {
@@ -82,13 +82,12 @@ Equations equations_of(std::span<const Eigen::Vector3d> points, const SurfaceTre
 
 /// Zero along directions that the equations hardly determine.
 Vector6d solution(const Equations& equations) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(equations.a);
-  const double least = 1e-6 * solver.eigenvalues()[5];
+  const SymmetricEigen<6> eigen = symmetric_eigen(equations.a);
+  const double least = 1e-6 * eigen.values[5];
   Vector6d x = Vector6d::Zero();
   for (Eigen::Index k = 0; k < 6; ++k)
-    if (solver.eigenvalues()[k] > least)
-      x += solver.eigenvectors().col(k) *
-           (solver.eigenvectors().col(k).dot(equations.b) / solver.eigenvalues()[k]);
+    if (eigen.values[k] > least)
+      x += eigen.vectors.col(k) * (eigen.vectors.col(k).dot(equations.b) / eigen.values[k]);
   return x;
 }
 

@@ -1,7 +1,8 @@
 #include "slam/graph/information_repair.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 
+#include "slam/core/symmetric_eigen.hpp"
 #include "slam/graph/planar_pose_graph.hpp"
 
 namespace planum {
@@ -23,14 +24,11 @@ std::vector<RepairedInformation> repair_information(Graph& graph) {
   std::vector<RepairedInformation> repaired;
   for (std::size_t i = 0; i < graph.edges.size(); ++i) {
     auto& information = graph.edges[i].information;
-    using Matrix = std::remove_reference_t<decltype(information)>;
     information = (0.5 * (information + information.transpose())).eval();
     if (positive_semidefinite(information)) continue;
-    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(information);
-    const auto values = eigen.eigenvalues().eval();
+    const auto [values, vectors] = symmetric_eigen(information);
     if (values[0] >= -rounding * values.cwiseAbs().maxCoeff()) continue;
-    information =
-        eigen.eigenvectors() * values.cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
+    information = vectors * values.cwiseMax(0).asDiagonal() * vectors.transpose();
     repaired.push_back({.edge = i, .least_eigenvalue = values[0]});
   }
   return repaired;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
+#include "slam/core/symmetric_eigen.hpp"
 
 namespace planum {
 namespace {
@@ -135,12 +135,12 @@ Determined determined(const NormalEquations& equations) {
   const Matrix6d per_pair =
       scale.asDiagonal() * (equations.hessian / equations.weight) * scale.asDiagonal();
   const Vector6d gradient = scale.asDiagonal() * (equations.gradient / equations.weight);
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(per_pair);
+  const SymmetricEigen<6> eigen = symmetric_eigen(per_pair);
   const double threshold =
       std::max(least_eigenvalue, least_signal_to_noise * equations.tilt_variance);
   for (int i = 0; i < 6; ++i) {
-    const double eigenvalue = solver.eigenvalues()[i];
-    const Vector6d direction = solver.eigenvectors().col(i);
+    const double eigenvalue = eigen.values[i];
+    const Vector6d direction = eigen.vectors.col(i);
     if (eigenvalue < threshold) {
       ++result.weak_directions;
       result.weak_part += direction * direction.transpose();
