@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <queue>
 
-#include <Eigen/Cholesky>
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
@@ -24,9 +24,9 @@ struct Way {
 };
 
 double length_of(const Edge& edge) {
-  const Eigen::LLT<Matrix6d> factor(edge.information);
-  if (factor.info() != Eigen::Success) return unsure;
-  const double length = uncertainty(factor.solve(Matrix6d::Identity()));
+  const std::optional<Matrix6d> covariance = covariance_of(edge.information);
+  if (!covariance) return unsure;
+  const double length = uncertainty(*covariance);
   return std::isfinite(length) ? std::min(length, unsure) : unsure;
 }
 

@@ -7,8 +7,6 @@
 #include <numeric>
 #include <optional>
 
-#include <Eigen/Cholesky>
-
 #include "slam/core/parallel.hpp"
 #include "slam/graph/path_covariance.hpp"
 
@@ -61,7 +59,7 @@ class Cycles {
     };
     const Matrix6d covariance = moved(covariances_[k], after_first) + moved(*forth, after_second) +
                                 moved(covariances_[l], after_second) + *back;
-    return std::sqrt(std::max(0.0, error.dot(covariance.ldlt().solve(error))));
+    return planum::deviation(error, covariance);
   }
 
  private:

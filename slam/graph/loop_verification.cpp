@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
+#include "slam/graph/path_covariance.hpp"
 #include "slam/registration/match_doubt.hpp"
 
 namespace planum {
@@ -89,10 +89,6 @@ std::string doubt(const LoopCandidate& candidate, const Alignment& alignment,
 }
 
 }  // namespace
-
-double deviation(const Vector6d& error, const Matrix6d& covariance) {
-  return std::sqrt(std::max(0.0, error.dot(covariance.ldlt().solve(error))));
-}
 
 Edge verified_loop(const LoopCandidate& candidate, const GatedPairMatcher& matcher,
                    const LoopEvidence& evidence, const LoopParams& params) {

@@ -19,7 +19,4 @@ struct LoopEvidence {
 Edge verified_loop(const LoopCandidate& candidate, const GatedPairMatcher& matcher,
                    const LoopEvidence& evidence, const LoopParams& params);
 
-/// How many standard deviations an error is.
-double deviation(const Vector6d& error, const Matrix6d& covariance);
-
 }  // namespace planum

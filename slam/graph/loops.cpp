@@ -18,6 +18,7 @@
 #include "slam/graph/loop_candidates.hpp"
 #include "slam/graph/loop_consistency.hpp"
 #include "slam/graph/loop_verification.hpp"
+#include "slam/graph/path_covariance.hpp"
 #include "slam/graph/scan_links.hpp"
 
 namespace planum {

@@ -1,5 +1,7 @@
 #include "slam/graph/path_covariance.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <queue>
 
 #include <Eigen/Cholesky>
@@ -11,13 +13,23 @@ double uncertainty(const Matrix6d& covariance) {
          lever * lever * covariance.diagonal().tail<3>().sum();
 }
 
+double deviation(const Vector6d& error, const Matrix6d& covariance) {
+  return std::sqrt(std::max(0.0, error.dot(covariance.ldlt().solve(error))));
+}
+
+std::optional<Matrix6d> covariance_of(const Matrix6d& information) {
+  const Eigen::LLT<Matrix6d> factor(information);
+  if (factor.info() != Eigen::Success) return std::nullopt;
+  return factor.solve(Matrix6d::Identity());
+}
+
 PathCovariances::PathCovariances(const PoseGraph& graph, const Matrix6d& step_noise)
     : ways_(graph.poses.size()) {
   for (const Edge& edge : graph.edges) {
     if (!edge.accepted) continue;
-    const Eigen::LLT<Matrix6d> factor(edge.information);
-    if (factor.info() != Eigen::Success) continue;
-    const Matrix6d covariance = factor.solve(Matrix6d::Identity()) + step_noise;
+    const std::optional<Matrix6d> own = covariance_of(edge.information);
+    if (!own) continue;
+    const Matrix6d covariance = *own + step_noise;
     const Matrix6d from_from_to = adjoint(edge.from_from_to);
     ways_[edge.from].push_back({edge.to, covariance, adjoint(edge.from_from_to.inverse())});
     ways_[edge.to].push_back(

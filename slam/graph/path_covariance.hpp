@@ -13,6 +13,12 @@ namespace planum {
 /// radian counts as 5 m.
 double uncertainty(const Matrix6d& covariance);
 
+/// How many standard deviations an error is.
+double deviation(const Vector6d& error, const Matrix6d& covariance);
+
+/// The inverse of information; none where that is not positive definite.
+std::optional<Matrix6d> covariance_of(const Matrix6d& information);
+
 /// How well the paths of accepted edges through a graph know relative poses. `step_noise` is added
 /// to the covariance of every edge. Edges whose information is singular are no part of a path.
 class PathCovariances {

@@ -17,6 +17,7 @@
 #include "slam/graph/loop_candidates.hpp"
 #include "slam/graph/loop_verification.hpp"
 #include "slam/graph/loops.hpp"
+#include "slam/graph/path_covariance.hpp"
 #include "slam/graph/plane_refinement.hpp"
 #include "slam/graph/pose_graph.hpp"
 #include "slam/graph/relax_lu_milios.hpp"

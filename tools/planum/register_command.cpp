@@ -1,11 +1,12 @@
 #include <cmath>
+#include <optional>
 
-#include <Eigen/Cholesky>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "slam/core/error.hpp"
 #include "slam/core/parallel.hpp"
+#include "slam/graph/path_covariance.hpp"
 #include "slam/graph/place_search.hpp"
 #include "slam/io/uos.hpp"
 #include "slam/registration/icp.hpp"
@@ -131,10 +132,9 @@ void print_text(const Registered& result) {
   fmt::print("target from source\n");
   fmt::print("  x y z           {:.4f} {:.4f} {:.4f} m\n", pose[0], pose[1], pose[2]);
   fmt::print("  yaw pitch roll  {:.3f} {:.3f} {:.3f} degrees\n", pose[3], pose[4], pose[5]);
-  const Eigen::LLT<Matrix6d> factor(match.information);
-  if (match.weak_directions == 0 && match.pairs > 0 && factor.info() == Eigen::Success) {
-    const Vector6d deviation =
-        factor.solve(Matrix6d::Identity()).diagonal().cwiseMax(0).cwiseSqrt();
+  const std::optional<Matrix6d> covariance = covariance_of(match.information);
+  if (match.weak_directions == 0 && match.pairs > 0 && covariance) {
+    const Vector6d deviation = covariance->diagonal().cwiseMax(0).cwiseSqrt();
     fmt::print("  known to        {:.1f} mm, {:.3f} degrees (largest standard deviations)\n",
                1000 * deviation.head<3>().maxCoeff(), degrees(deviation.tail<3>().maxCoeff()));
   } else if (match.pairs > 0) {
