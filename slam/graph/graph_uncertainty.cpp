@@ -1,10 +1,8 @@
-#include <algorithm>
 #include <cmath>
-
-#include <Eigen/Dense>
 
 #include "slam/core/parallel.hpp"
 #include "slam/graph/graph_solver.hpp"
+#include "slam/graph/mixed_error.hpp"
 
 namespace planum {
 
@@ -51,13 +49,12 @@ Innovation GraphSolver<Manifold>::innovation(std::size_t i, Poses poses, bool co
   } else {
     p *= 2;  // Cov(a + b) <= 2 Cov(a) + 2 Cov(b)
   }
-  const Eigen::PartialPivLU<Matrix> lu(Matrix::Identity() +
-                                       (counted ? -1.0 : 1.0) * edge.information * p);
-  const double determinant = lu.determinant();
+  const Matrix m = Matrix::Identity() + (counted ? -1.0 : 1.0) * edge.information * p;
+  const MixedError mixed = mixed_error<Manifold::dimension>(m, l.error, edge.information * l.error);
   // What only this edge joins has 1 - I P = 0, up to rounding.
-  if (!(determinant > 1e-9)) return result;
-  result.squared = std::max(0.0, l.error.dot(lu.solve(edge.information * l.error)));
-  result.gain = 0.5 * std::abs(std::log(determinant));
+  if (!(mixed.determinant > 1e-9)) return result;
+  result.squared = mixed.squared;
+  result.gain = 0.5 * std::abs(std::log(mixed.determinant));
   return result;
 }
 

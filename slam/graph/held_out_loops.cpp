@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
 #include "slam/graph/graph_optimization.hpp"
+#include "slam/graph/mixed_error.hpp"
 
 namespace planum {
 namespace {
@@ -34,12 +34,11 @@ EdgeResidual edge_residual(const Edge& edge, const std::vector<Pose>& poses,
   const Vector6d error = edge_error(edge, poses);
   const Vector6d variances =
       both_parts(noise.translation * noise.translation, noise.rotation * noise.rotation);
-  // (I^-1 + N)^-1 = (1 + I N)^-1 I, which exists where I^-1 does not.
-  const Matrix6d mixed = Matrix6d::Identity() + edge.information * variances.asDiagonal();
-  const double squared = error.dot(mixed.partialPivLu().solve(edge.information * error));
+  const Matrix6d m = Matrix6d::Identity() + edge.information * variances.asDiagonal();
+  const double squared = mixed_error<6>(m, error, edge.information * error).squared;
   return {.translation = error.head<3>().norm(),
           .rotation = error.tail<3>().norm(),
-          .deviations = std::sqrt(std::max(0.0, squared))};
+          .deviations = std::sqrt(squared)};
 }
 
 HeldOutLoops held_out_loops(const PoseGraph& graph, const HeldOutParams& params,

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
+
+#include "slam/graph/mixed_error.hpp"
 
 namespace planum {
 namespace {
@@ -90,12 +92,11 @@ Innovation OdometryTree<Manifold>::innovation(const typename Manifold::EdgeType&
       covariance_[edge.from] + covariance_[edge.to] - 2 * covariance_[meeting(edge.from, edge.to)];
   const Matrix own_from_world = Manifold::world_from_own(Manifold::inverse(poses_[edge.to]));
   const Matrix by_world = l.by_to * own_from_world;
-  const Eigen::PartialPivLU<Matrix> lu(Matrix::Identity() +
-                                       edge.information * (by_world * path * by_world.transpose()));
-  const double determinant = lu.determinant();
-  if (!(determinant > 0) || !std::isfinite(determinant)) return result;
-  result.squared = std::max(0.0, l.error.dot(lu.solve(edge.information * l.error)));
-  result.gain = 0.5 * std::log(determinant);
+  const Matrix m = Matrix::Identity() + edge.information * (by_world * path * by_world.transpose());
+  const MixedError mixed = mixed_error<Manifold::dimension>(m, l.error, edge.information * l.error);
+  if (!(mixed.determinant > 0) || !std::isfinite(mixed.determinant)) return result;
+  result.squared = mixed.squared;
+  result.gain = 0.5 * std::log(mixed.determinant);
   return result;
 }
 
